@@ -1,0 +1,143 @@
+//! The coarse interface of a device: load a system, evaluate it, advance it, read it back.
+//!
+//! State stays on the device between calls. Inner loops are monomorphic behind this boundary.
+
+use crate::{Dynamics, ListRequest, NeighborList, Particles, Plan, Result, System, Vec3s};
+use serde::Serialize;
+
+/// What an evaluation computes beside forces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Quantities {
+    /// Potential energy, virial, pairs and the per-particle energies and neighbour counts.
+    pub energy: bool,
+}
+
+impl Quantities {
+    /// Forces only.
+    pub const FORCES: Self = Self { energy: false };
+    /// Forces, energy, virial and neighbour counts.
+    pub const ALL: Self = Self { energy: true };
+}
+
+/// Sums over all particles.
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize)]
+pub struct Totals {
+    /// Kinetic energy.
+    pub kinetic_energy: f64,
+    /// Potential energy without tail corrections; zero when only forces were asked for.
+    pub potential_energy: f64,
+    /// W = sum over pairs of r_ij . f_ij; zero when only forces were asked for.
+    pub virial: f64,
+    /// Pairs within range, each once; zero when only forces were asked for.
+    pub pairs: u64,
+    /// Total momentum.
+    pub momentum: [f64; 3],
+    /// Largest force on a particle.
+    pub max_force: f64,
+}
+
+/// Per-particle results, in input order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PerParticle {
+    /// Forces, `[N]`.
+    pub force: Vec3s,
+    /// Half of the energy of each particle's pairs, `[N]`; empty when only forces were asked for.
+    pub energy: Vec<f64>,
+    /// Number of neighbours, `[N]`; empty when only forces were asked for.
+    pub neighbors: Vec<u32>,
+}
+
+/// Structure and query cost of one step, for the maintenance time series (paper A, figure 8).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct StepCost {
+    /// Whether the structure was built anew rather than refitted.
+    pub built: bool,
+    /// Seconds to build or refit.
+    pub structure: f64,
+    /// Seconds to find and consume the pairs.
+    pub query: f64,
+}
+
+/// What an engine did since the system was loaded.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Report {
+    /// Force evaluations.
+    pub evaluations: u64,
+    /// Structures built.
+    pub builds: u64,
+    /// Structures refitted.
+    pub refits: u64,
+    /// Builds that correctness required where the policy asked for a refit (the ghost layer was outrun).
+    pub forced_builds: u64,
+    /// Neighbour lists built.
+    pub list_builds: u64,
+    /// List builds that came at the first step after the one before: the skin is too thin for the motion. No pair
+    /// is missed (the test runs before each use), but the list saves nothing.
+    pub dangerous_builds: u64,
+    /// Evaluations whose list did not fit the memory budget and was processed in batches.
+    pub batched_evaluations: u64,
+    /// Seconds spent building structures.
+    pub build_seconds: f64,
+    /// Seconds spent refitting.
+    pub refit_seconds: f64,
+    /// Seconds spent finding and consuming pairs.
+    pub query_seconds: f64,
+    /// Seconds spent integrating, reordering and summing.
+    pub integrate_seconds: f64,
+    /// Bytes held by the engine.
+    pub bytes: u64,
+    /// Cost of each evaluation, when recording was asked for.
+    pub history: Vec<StepCost>,
+}
+
+/// A device that holds a system and computes on it.
+///
+/// Preconditions: the system passed [`System::validate`] and is wrapped; the plan's method is one of
+/// [`Engine::supports`]. Everything that goes in or out is in input order.
+pub trait Engine: Send {
+    /// Name of the device, for reports.
+    fn device(&self) -> String;
+
+    /// Whether this engine can compute the system by the plan.
+    ///
+    /// # Errors
+    /// [`crate::Error::Unsupported`] with the reason.
+    fn supports(&self, system: &System, plan: &Plan) -> Result<()>;
+
+    /// Takes a system, forgetting any other. Two engines that loaded equal systems by equal plans continue equally.
+    ///
+    /// # Errors
+    /// As [`Engine::supports`], and when memory is short.
+    fn load(&mut self, system: &System, plan: &Plan) -> Result<()>;
+
+    /// Evaluates forces, and what else is asked for, at the current positions.
+    ///
+    /// # Errors
+    /// [`crate::Error::Coincident`] when two particles coincide where the potential diverges.
+    fn evaluate(&mut self, quantities: Quantities) -> Result<Totals>;
+
+    /// Moves the system by `steps` steps, the first of which ends at step `from + 1`, and gives the totals at the
+    /// end with the asked quantities. The first call after [`Engine::load`] evaluates the initial forces itself.
+    ///
+    /// # Errors
+    /// As [`Engine::evaluate`]; [`crate::Error::NonFinite`] when the run has blown up.
+    fn advance(&mut self, dynamics: &Dynamics, from: u64, steps: u64, quantities: Quantities) -> Result<Totals>;
+
+    /// Copies positions, velocities, types and image counts out.
+    fn snapshot(&mut self, particles: &mut Particles);
+
+    /// Copies the results of the last evaluation out.
+    fn per_particle(&mut self, out: &mut PerParticle);
+
+    /// The neighbour list at the current positions.
+    ///
+    /// # Errors
+    /// [`crate::Error::NotLoaded`], or when memory is short.
+    fn neighbor_list(&mut self, request: ListRequest) -> Result<NeighborList>;
+
+    /// What was done since [`Engine::load`].
+    fn report(&self) -> Report;
+
+    /// Starts or stops recording [`Report::history`].
+    fn record_history(&mut self, on: bool);
+}
