@@ -137,7 +137,7 @@ impl SimBox {
         let wrapped = (f64::from(value) - count * (hi - lo)) as f32;
         // Rounding to f32 may land on `hi` itself, which is the image of `lo`.
         if wrapped >= self.hi[axis] {
-            (self.lo[axis], count as i32 + 1)
+            (self.lo[axis], (count as i32).saturating_add(1))
         } else {
             (wrapped.max(self.lo[axis]), count as i32)
         }
