@@ -24,9 +24,8 @@ pub fn optimal_updates(rebuild: f64, refit: f64, growth: f64) -> Option<f64> {
 
 /// The optimum of the cost summed exactly over the steps instead of integrated.
 pub fn optimal_updates_exact(rebuild: f64, refit: f64, growth: f64) -> Option<f64> {
-    optimal_updates(rebuild, refit, growth).map(|k| {
-        if k > 0.0 { (-1.0 + (2.0 * (rebuild - refit) / growth).sqrt()).max(0.0) } else { 0.0 }
-    })
+    optimal_updates(rebuild, refit, growth)
+        .map(|k| if k > 0.0 { (-1.0 + (2.0 * (rebuild - refit) / growth).sqrt()).max(0.0) } else { 0.0 })
 }
 
 /// Refits after which the structure is rebuilt even though queries seem not to slow down: bounds the harm of a
