@@ -21,8 +21,8 @@ impl System {
         for i in 0..self.particles.len() {
             let (wrapped, crossings) = self.sim_box.wrap(self.particles.position.get(i));
             self.particles.position.set(i, wrapped);
-            for axis in 0..3 {
-                self.particles.image[i][axis] += crossings[axis];
+            for (image, crossed) in self.particles.image[i].iter_mut().zip(crossings) {
+                *image += crossed;
             }
         }
     }
