@@ -4,8 +4,10 @@
 //! applies the predicate to them and does something with the pairs. Structures and consumers know nothing of each
 //! other, so each combination is exact once each part is.
 
+mod bvh;
 mod slots;
 mod structure;
 
+pub use bvh::{Bvh, Refit};
 pub use slots::{Input, InputRadii, LANES, Slots};
 pub use structure::{GroupBox, Run, Structure};
