@@ -11,6 +11,7 @@ pub struct Brute {
 }
 
 impl Brute {
+    pub fn bytes(&self) -> usize { self.slots.bytes() }
     /// Copies the particles.
     pub fn build(&mut self, input: &Input) {
         self.slots.fill(input, 0..input.len() as u32);

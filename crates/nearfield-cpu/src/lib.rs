@@ -5,15 +5,31 @@
 //! other, so each combination is exact once each part is.
 
 mod brute;
+mod bvh;
 mod engine;
-mod kernel;
 mod exact_sum;
+mod kernel;
 mod parallel;
 mod physics;
 mod slots;
 mod structure;
 
 pub use brute::Brute;
+pub use bvh::{Bvh, Refit};
 pub use engine::CpuEngine;
 pub use slots::{Input, InputRadii, LANES, Slots};
+type Grid = Brute;
+mod list { pub use crate::liststub::*; }
+mod liststub;
 pub use structure::{GroupBox, Run, Structure};
+
+/// Name of the instruction set that kernels run with here.
+pub fn instruction_set() -> &'static str {
+    match pulp::Arch::new() {
+        #[cfg(target_arch = "x86_64")]
+        pulp::Arch::V4(_) => "AVX-512",
+        #[cfg(target_arch = "x86_64")]
+        pulp::Arch::V3(_) => "AVX2",
+        _ => "portable",
+    }
+}

@@ -4,12 +4,12 @@ use super::{
     maintain::Upkeep,
     motion::Reference,
     reorder,
-    results::{Results, Sink},
+    results::Results,
     rt_list::StoredList,
     state::State,
 };
 use crate::{
-    kernel::{Finish, ScatterSums, Sums, gather, scatter},
+    kernel::{ScatterSums, Sums, gather, scatter},
     physics::Physics,
 };
 use nearfield_core::{
@@ -66,18 +66,28 @@ impl Loaded {
         self.results.prepare(self.state.len(), quantities.energy);
         let watch = NonFiniteWatch::default();
         let start = Instant::now();
-        let mut results = std::mem::take(&mut self.results);
-        {
-            let sink = results.sink();
-            let id = &self.state.id;
-            let finish = |i: u32, sums: &Sums| {
-                watch.see(sums.force, id[i as usize]);
-                // SAFETY: a query finishes each particle once.
-                unsafe { Sink::store(&sink, i as usize, sums) };
-            };
-            self.query(quantities, &finish);
+        let Self { plan, physics, state, results, upkeep, scatter: sums, list, report, .. } = self;
+        let structure = upkeep.index.structure();
+        let sink = results.sink();
+        let finish = |i: u32, sums: &Sums| {
+            watch.see(sums.force, state.id[i as usize]);
+            // SAFETY: each method below finishes each particle once.
+            unsafe { sink.store(i as usize, sums) };
+        };
+        match plan.method {
+            Method::Brute | Method::Cell => {
+                gather(physics, structure, plan.deterministic, quantities.energy, &finish);
+            }
+            // The order of candidates depends on when the BVH was built, which policies decide by the clock:
+            // exact sums keep results independent of it.
+            Method::RtBoxes | Method::RtPerse => gather(physics, structure, true, quantities.energy, &finish),
+            Method::RtForces => {
+                sums.reset(state.len());
+                scatter(physics, structure, sums);
+                sums.for_each(&finish);
+            }
+            Method::RtList => list.gather(structure, state, physics, plan, report, &finish),
         }
-        self.results = results;
         self.account(start.elapsed().as_secs_f64());
         if let Some(particle) = watch.first() {
             return Err(self.diagnose(particle, step));
@@ -108,27 +118,6 @@ impl Loaded {
             self.reference.set(&self.state);
         }
         self.list.invalidate();
-    }
-
-    /// Hands the sums of each particle to `finish`, once each.
-    pub fn query(&mut self, quantities: Quantities, finish: Finish) {
-        let structure = self.upkeep.index.structure();
-        match self.plan.method {
-            Method::Brute | Method::Cell => {
-                gather(&self.physics, structure, self.plan.deterministic, quantities.energy, finish);
-            }
-            // The order of candidates depends on when the BVH was built, which policies decide by the clock:
-            // exact sums keep results independent of it.
-            Method::RtBoxes | Method::RtPerse => gather(&self.physics, structure, true, quantities.energy, finish),
-            Method::RtForces => {
-                self.scatter.reset(self.state.len());
-                scatter(&self.physics, structure, &self.scatter);
-                self.scatter.for_each(finish);
-            }
-            Method::RtList => {
-                self.list.gather(structure, &self.state, &self.physics, &self.plan, &mut self.report, finish);
-            }
-        }
     }
 
     /// Books a query and tells the policy.

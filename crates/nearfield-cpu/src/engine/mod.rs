@@ -11,7 +11,7 @@ mod run;
 mod state;
 mod thermostat;
 
-use crate::{InputRadii, list, physics::Physics};
+use crate::{InputRadii, list};
 use evaluate::Loaded;
 use nearfield_core::{
     Dynamics, Engine, Error, ListRequest, NeighborList, Particles, PerParticle, Plan, Quantities, Radii, Report,
