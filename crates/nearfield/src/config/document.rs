@@ -92,9 +92,14 @@ impl<'a> Document<'a> {
     /// Where the value of a dotted key comes from: the last option that set it or a table around it, else the
     /// deepest written key on the way to it.
     pub(super) fn origin(&self, key: &str) -> Origin {
-        let covers = |set: &str| key.strip_prefix(set).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'));
-        if let Some((_, option)) = self.set.iter().rev().find(|(set, _)| covers(set)) {
-            return Origin::Option(option.clone());
+        let within = |outer: &str, inner: &str| {
+            inner.strip_prefix(outer).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+        };
+        let option = |decides: &dyn Fn(&str) -> bool| {
+            self.set.iter().rev().find(|(set, _)| decides(set)).map(|(_, option)| Origin::Option(option.clone()))
+        };
+        if let Some(origin) = option(&|set| within(set, key)) {
+            return origin;
         }
         let mut start = None;
         let mut at: Option<&DeValue> = None;
@@ -116,7 +121,11 @@ impl<'a> Document<'a> {
                 break;
             }
         }
-        start.map_or(Origin::Unknown, |start| Origin::Line(line_of(self.text, start)))
+        match start {
+            Some(start) => Origin::Line(line_of(self.text, start)),
+            // A section that exists only because an option set something in it.
+            None => option(&|set| within(key, set)).unwrap_or(Origin::Unknown),
+        }
     }
 }
 

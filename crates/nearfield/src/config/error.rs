@@ -52,7 +52,10 @@ pub enum Error {
     #[error("--set {0}: write KEY=VALUE, as in --set dynamics.dt=0.002")]
     NotKeyValue(String),
     /// No such key or section.
-    #[error("{at}unknown key \"{key}\"{}; {hint}", if section.is_empty() { String::new() } else { format!(" in [{section}]") })]
+    #[error(
+        "{at}unknown key \"{key}\"{}; {hint}",
+        if section.is_empty() { String::new() } else { format!(" in [{section}]") }
+    )]
     UnknownKey {
         /// Where.
         at: Origin,
@@ -105,7 +108,8 @@ pub enum Error {
     DuplicateType(String),
     /// The input has a species that no type describes.
     #[error(
-        "the input has particles of species \"{species}\", but no [[interaction.type]] has that name; known types are {known}"
+        "the input has particles of species \"{species}\", but no [[interaction.type]] has that name; \
+         known types are {known}"
     )]
     UnknownSpecies {
         /// The species or LAMMPS type id.
@@ -113,6 +117,9 @@ pub enum Error {
         /// Known names.
         known: String,
     },
+    /// A value that a program put in has no place in TOML, such as a path that is not UTF-8.
+    #[error("the configuration cannot be written as TOML: {0}")]
+    NotToml(#[from] toml::ser::Error),
     /// Initial conditions cannot be generated.
     #[error("system.generate: {0}")]
     Generate(#[from] crate::generate::Error),

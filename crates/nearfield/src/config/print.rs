@@ -1,7 +1,7 @@
 //! The whole configuration as a commented file.
 
 use super::{
-    Config,
+    Config, Result,
     schema::{Accepts, Key, ROOT, Section},
 };
 use crate::generate::{Generate, RadiiSpec};
@@ -14,21 +14,20 @@ const COMMENT: usize = 40;
 impl Config {
     /// Every key with its value and a comment, as TOML that [`Config::parse`] reads back to an equal configuration.
     /// What is absent and has no default is commented out.
-    pub fn to_toml(&self) -> String {
+    ///
+    /// # Errors
+    /// [`super::Error::NotToml`] when a program put in what TOML cannot hold: a path that is not UTF-8, a seed of 2^63
+    /// or more.
+    pub fn to_toml(&self) -> Result<String> {
         let mut defaults = Config::default();
         defaults.system.generate = Some(Generate { radii: Some(RadiiSpec::default()), ..Generate::default() });
+        let (values, defaults) = (Table::try_from(self)?, Table::try_from(&defaults)?);
         let mut out = String::new();
         for section in ROOT.sections {
-            print_section(&mut out, section, "", values(self).get(section.name), values(&defaults).get(section.name));
+            print_section(&mut out, section, "", values.get(section.name), defaults.get(section.name));
         }
-        out
+        Ok(out)
     }
-}
-
-/// The configuration as a tree.
-fn values(config: &Config) -> Table {
-    // Only paths that are not UTF-8 cannot be written as TOML, and a configuration file cannot hold them.
-    Table::try_from(config).unwrap_or_default()
 }
 
 /// Prints a section and those inside it. One that is absent is printed from its defaults, commented out.

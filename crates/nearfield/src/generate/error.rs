@@ -18,7 +18,10 @@ pub enum Error {
         reason: &'static str,
     },
     /// Neither or both of density and box were given.
-    #[error("{}: give either density or box = [x, y, z]", if *.both { "density and box are both given" } else { "the size of the box is missing" })]
+    #[error(
+        "{}: give either density or box = [x, y, z]",
+        if *.both { "density and box are both given" } else { "the size of the box is missing" }
+    )]
     BoxSize {
         /// Both were given, else neither.
         both: bool,

@@ -58,8 +58,8 @@ pub fn fcc(n: usize, sim_box: &SimBox) -> Result<Vec3s> {
     Ok(positions)
 }
 
-/// Cells per axis for ever smaller cubic cells, without end; each count the nearest whole number: the next one comes where an
-/// axis reaches a half.
+/// Cells per axis for ever smaller cubic cells, without end. Each count is the nearest whole number, so the next shape
+/// comes where an axis reaches a half.
 fn shapes(lengths: [f64; 3]) -> impl Iterator<Item = [usize; 3]> {
     let longest = lengths.iter().copied().fold(0.0, f64::max);
     let mut scale = 1.0 / longest;

@@ -1,8 +1,9 @@
 //! Initial conditions: positions, search radii and velocities from a few numbers and a seed.
 //!
 //! One file per arrangement. Positions, radii and velocities draw from separate random streams, so changing one of
-//! them leaves the others as they were. Generation is sequential and uses no platform mathematics that rounds
-//! differently between systems in the results' precision, so a seed means the same start everywhere.
+//! them leaves the others as they were. A seed means the same start everywhere: generation is sequential, and every
+//! operation rounds alike on all platforms. (One exception: normal draws beyond 3.65 sigma, one in 3900, and some
+//! rejection tests take the platform's f64 `ln` and `exp`; a different last bit rarely survives rounding to f32.)
 
 mod cluster;
 mod disordered;
