@@ -1,1 +1,3 @@
-//! To be written.
+//! Fixed-radius neighbour search and short-range particle simulation.
+
+pub mod io;
