@@ -1,5 +1,5 @@
-//! Files that other programs wrote. They are not part of this repository: the environment variable `NEARFIELD_DATA` names
-//! their folder, `../shared/data` from the workspace root by default; where it is absent these tests are ignored.
+//! Files that other programs wrote. They are not part of this repository: the environment variable `NEARFIELD_DATA`
+//! names their folder, `../shared/data` from the workspace root by default; where it is absent these tests are ignored.
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use nearfield::io::{Configuration, IoError, Problem, ReadOptions, read, write};

@@ -9,8 +9,8 @@ use std::{
 
 /// A growing file, such as a trajectory or a table of a running simulation.
 ///
-/// Each record goes to the operating system at once and in one piece, so a kill leaves at most the last record cut short.
-/// A checkpoint keeps [`AppendFile::length`]; to resume, [`AppendFile::open_at`] drops whatever came after it.
+/// Each record goes to the operating system at once and in one piece, so a kill leaves at most the last record cut
+/// short. A checkpoint keeps [`AppendFile::length`]; to resume, [`AppendFile::open_at`] drops whatever came after it.
 ///
 /// ```
 /// use nearfield::io::AppendFile;

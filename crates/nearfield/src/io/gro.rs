@@ -1,7 +1,7 @@
 //! GROMACS coordinate files, which have fixed columns.
 //!
-//! The format: <https://manual.gromacs.org/current/reference-manual/file-formats.html#gro>. Lengths stay in nanometres. The
-//! file does not say which axes are periodic. A box of zeros stands for none.
+//! The format: <https://manual.gromacs.org/current/reference-manual/file-formats.html#gro>. Lengths stay in nanometres.
+//! The file does not say which axes are periodic. A box of zeros stands for none.
 
 use super::{
     Bounds, Configuration, Problem, Result,
@@ -48,8 +48,8 @@ pub(super) fn read(mut lines: LineReader<impl BufRead>) -> Result<Configuration>
     Ok(configuration)
 }
 
-/// Where the numbers of an atom's line stand. Told by the first atom, since files of more than three decimals have wider
-/// columns: the distance between two decimal points is the width.
+/// Where the numbers of an atom's line stand. Told by the first atom, since files of more than three decimals have
+/// wider columns: the distance between two decimal points is the width.
 #[derive(Clone, Copy)]
 struct Columns {
     width: usize,

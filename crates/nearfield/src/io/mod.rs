@@ -1,9 +1,9 @@
 //! Files in and out, one format a file.
 //!
-//! [`read`] turns a file (or standard input) into a [`Configuration`], [`write()`] does the reverse; both tell the format
-//! by extension. [`Frames`] streams the frames of an extended XYZ trajectory, [`Trajectory`] writes one. Files that are
-//! written once go through [`atomic_write`], files that grow through [`AppendFile`], so that a kill at any moment leaves
-//! something readable.
+//! [`read`] turns a file (or standard input) into a [`Configuration`], [`write()`] does the reverse; both tell the
+//! format by extension. [`Frames`] streams the frames of an extended XYZ trajectory, [`Trajectory`] writes one. Files
+//! that are written once go through [`atomic_write`], files that grow through [`AppendFile`], so that a kill at any
+//! moment leaves something readable.
 //!
 //! | format | extensions | read | written |
 //! |---|---|---|---|

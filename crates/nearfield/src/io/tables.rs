@@ -49,8 +49,8 @@ pub fn write_pairs_csv(path: impl AsRef<Path>, list: &NeighborList) -> Result<()
     })
 }
 
-/// Writes the NumPy arrays `i` and `j` (`[P]`, uint32), `distance` (`[P]`, float32), and `shift` (`[P, 3]`, int8) where the
-/// list has shifts; `numpy.load` opens the file. Uncompressed, as `numpy.savez` does.
+/// Writes the NumPy arrays `i` and `j` (`[P]`, uint32), `distance` (`[P]`, float32), and `shift` (`[P, 3]`, int8) where
+/// the list has shifts; `numpy.load` opens the file. Uncompressed, as `numpy.savez` does.
 ///
 /// # Errors
 /// As [`write_pairs_csv`].

@@ -3,7 +3,8 @@
 use super::{AppendFile, Configuration, IoError, Result, extended_xyz};
 use std::path::Path;
 
-/// Writes extended XYZ frames that ASE and OVITO open; each is handed to the operating system as soon as it is complete.
+/// Writes extended XYZ frames that ASE and OVITO open; each is handed to the operating system as soon as it is
+/// complete.
 ///
 /// To resume, keep [`Trajectory::length`] in the checkpoint and go on with [`Trajectory::open_at`].
 #[derive(Debug)]

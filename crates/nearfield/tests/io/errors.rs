@@ -101,6 +101,7 @@ fn wrong_lammps_headers_are_refused() {
         ("2 atom types # comment\n", "", 11, "expected a header line `N atom types`"),
         ("2 atoms", "two atoms", 3, "expected a header line (`N atoms`"),
         ("2 atoms", "2.5 atoms", 3, "expected a count"),
+        ("2 atom types", "99999999999 atom types", 4, "expected a count of at most 1048576"),
     ];
     for (old, new, line, problem) in cases {
         let text = format!("{}\nAtoms\n\n1 1 0 0 0\n2 1 0 0 0\n", LAMMPS_HEADER.replace(old, new));

@@ -1,7 +1,8 @@
 //! What valid files give.
 
 use crate::read_text;
-use nearfield::io::{Format, Frame, Frames, IoError, ReadOptions, read};
+use nearfield::io::{Configuration, Format, Frame, Frames, IoError, ReadOptions, read, write};
+use nearfield_core::{Boundary, Interaction, Particles, Radii, SimBox, System};
 
 const TWO_FRAMES: &str = "2\nfirst\nAr 0 0 0\nNe 1 2 3\n\n1\nsecond\nAr 5 6 7\n";
 
@@ -13,6 +14,12 @@ fn plain_xyz_is_open_and_may_have_further_columns() {
     assert_eq!(gas.species.of, [0, 1]);
     assert_eq!(gas.comment.as_deref(), Some("argon at T=300 K"));
     assert_eq!((gas.bounds, gas.velocity, gas.id), (None, None, None));
+}
+
+#[test]
+fn free_text_that_resembles_extended_xyz_stays_free_text() {
+    let gas = read_text("gas.xyz", "1\nProperties of Maxwell's gas at T=300 K\nAr 0 0 0\n").unwrap();
+    assert_eq!(gas.comment.as_deref(), Some("Properties of Maxwell's gas at T=300 K"));
 }
 
 #[test]
@@ -136,4 +143,27 @@ fn gromacs_columns_of_any_precision_are_read() {
     assert_eq!(water.species.names, ["OW", "HW1"]);
     assert_eq!((water.time, water.step), (Some(1.5), Some(300)));
     assert_eq!(water.bounds.unwrap().hi, [3.0, 4.0, 5.0]);
+}
+
+#[test]
+fn a_system_reads_back_from_its_file() {
+    let boundary = [Boundary::Periodic, Boundary::Wall, Boundary::Open];
+    let system = System {
+        sim_box: SimBox::new([-1.0, 0.1, 0.0], [3.0, 9.3, 7.7], boundary).unwrap(),
+        particles: Particles::at([[0.0, 0.5, 1.0], [2.0, 0.1, -3.0]]),
+        radii: Radii::PerParticle(vec![0.5, 1.5]),
+        interaction: Interaction::lennard_jones(),
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("system.xyz");
+    write(&path, &Configuration::from(&system)).unwrap();
+    let back = read(&path, &ReadOptions::default()).unwrap();
+    assert_eq!(back.position, system.particles.position);
+    assert_eq!(back.velocity.as_ref(), Some(&system.particles.velocity));
+    assert_eq!(back.image.as_ref(), Some(&system.particles.image));
+    assert_eq!((back.species.names, back.species.of, back.mass), (vec!["1".into()], vec![0, 0], Some(vec![1.0])));
+    assert_eq!(back.radius, Some(vec![0.5, 1.5]));
+    let bounds = back.bounds.unwrap();
+    assert_eq!((bounds.lo, bounds.hi), (system.sim_box.lo(), system.sim_box.hi()));
+    assert_eq!(bounds.periodic, Some([true, false, false]));
 }

@@ -89,7 +89,10 @@ proptest! {
     }
 
     #[test]
-    fn any_text_is_read_or_refused_by_name(text in "([0-9]{1,2}|[a-z =\"\\-.0-9\n]{0,40}\n){0,6}", name in "a\\.(xyz|data|gro)") {
+    fn any_text_is_read_or_refused_by_name(
+        text in "([0-9]{1,2}|[a-z =\"\\-.0-9\n]{0,40}\n){0,6}",
+        name in "a\\.(xyz|data|gro)",
+    ) {
         if let Err(error) = crate::read_text(&name, &text) {
             prop_assert!(error.to_string().contains(&name), "{}", error);
         }

@@ -18,7 +18,7 @@ impl Comment {
     /// A line with none of `Properties=`, `Lattice=`, `pbc=` is the free text of plain XYZ.
     pub(super) fn parse(line: &str) -> Parsed<Self> {
         let text = line.trim();
-        if !["Properties", "Lattice", "pbc"].iter().any(|key| line.contains(key)) || !line.contains('=') {
+        if !["Properties", "Lattice", "pbc"].iter().any(|key| declares(text, key)) {
             return Ok(Self { text: (!text.is_empty()).then(|| text.to_owned()), ..Self::default() });
         }
         let mut comment = Self::default();
@@ -47,6 +47,11 @@ impl Comment {
         };
         Ok(comment)
     }
+}
+
+/// Whether `key =` is somewhere in the line.
+fn declares(line: &str, key: &str) -> bool {
+    line.match_indices(key).any(|(at, _)| line[at + key.len()..].trim_start().starts_with('='))
 }
 
 fn bounds(lattice: [f64; 9], lo: [f64; 3], periodic: [bool; 3]) -> Parsed<Bounds> {
@@ -91,8 +96,8 @@ fn values(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| c.is_whitespace() || c == ',').filter(|v| !v.is_empty())
 }
 
-/// Splits `key=value` pairs. A value may be enclosed in "", '', {} or []; a backslash takes the next character as it is.
-/// A word without `=` is a key with the value `T`.
+/// Splits `key=value` pairs. A value may be enclosed in "", '', {} or []; a backslash takes the next character as it
+/// is. A word without `=` is a key with the value `T`.
 fn key_values(line: &str) -> Parsed<Vec<(String, String)>> {
     let mut pairs = Vec::new();
     let mut characters = line.chars().peekable();

@@ -53,7 +53,8 @@ fn encode_bounds(bounds: Bounds, out: &mut Vec<u8>) {
 }
 
 fn properties(configuration: &Configuration) -> String {
-    // ASE refuses a `species` that is no chemical symbol; `type` it keeps as it is, and OVITO takes either for the type.
+    // ASE refuses a `species` that is no chemical symbol; `type` it keeps as it is, and OVITO takes either for the
+    // type.
     let symbols = configuration.species.names.iter().all(|name| is_symbol(name));
     let optional = [
         (configuration.velocity.is_some(), ":velo:R:3"),

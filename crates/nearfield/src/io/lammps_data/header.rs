@@ -28,6 +28,9 @@ const OTHER_COUNTS: [&str; 12] = [
     "bodies",
 ];
 
+/// More atom types than anyone has; a wrong count must not exhaust the memory.
+const MAX_TYPES: usize = 1 << 20;
+
 /// The text before a comment, without white space around it.
 pub(super) fn without_comment(line: &str) -> &str {
     line.split('#').next().unwrap_or_default().trim()
@@ -75,8 +78,8 @@ impl Found {
         let numbers: Vec<f64> = line.split_ascii_whitespace().take_while(is_number).flat_map(str::parse).collect();
         let keyword = line.split_ascii_whitespace().skip(numbers.len()).collect::<Vec<_>>().join(" ");
         match (keyword.as_str(), numbers.as_slice()) {
-            ("atoms", _) => self.n_atoms = Some(count(line)?),
-            ("atom types", _) => self.n_types = Some(count(line)?),
+            ("atoms", _) => self.n_atoms = Some(count(line, usize::MAX)?),
+            ("atom types", _) => self.n_types = Some(count(line, MAX_TYPES)?),
             ("xlo xhi", &[lo, hi]) => (self.lo[0], self.hi[0]) = (Some(lo), Some(hi)),
             ("ylo yhi", &[lo, hi]) => (self.lo[1], self.hi[1]) = (Some(lo), Some(hi)),
             ("zlo zhi", &[lo, hi]) => (self.lo[2], self.hi[2]) = (Some(lo), Some(hi)),
@@ -111,7 +114,8 @@ impl Found {
     }
 }
 
-fn count(line: &str) -> Parsed<usize> {
+fn count(line: &str, limit: usize) -> Parsed<usize> {
     let word = line.split_ascii_whitespace().next().unwrap_or_default();
-    word.parse().map_err(|_| Problem::expected("a count", line))
+    let count = word.parse().ok().filter(|&count| count <= limit);
+    count.ok_or_else(|| Problem::expected(format!("a count of at most {limit}"), line))
 }
