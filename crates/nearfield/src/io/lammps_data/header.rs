@@ -78,7 +78,7 @@ impl Found {
         let numbers: Vec<f64> = line.split_ascii_whitespace().take_while(is_number).flat_map(str::parse).collect();
         let keyword = line.split_ascii_whitespace().skip(numbers.len()).collect::<Vec<_>>().join(" ");
         match (keyword.as_str(), numbers.as_slice()) {
-            ("atoms", _) => self.n_atoms = Some(count(line, usize::MAX)?),
+            ("atoms", _) => self.n_atoms = Some(count(line, i32::MAX as usize)?),
             ("atom types", _) => self.n_types = Some(count(line, MAX_TYPES)?),
             ("xlo xhi", &[lo, hi]) => (self.lo[0], self.hi[0]) = (Some(lo), Some(hi)),
             ("ylo yhi", &[lo, hi]) => (self.lo[1], self.hi[1]) = (Some(lo), Some(hi)),
