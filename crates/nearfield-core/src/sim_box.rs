@@ -137,7 +137,7 @@ impl SimBox {
         let wrapped = (f64::from(value) - count * (hi - lo)) as f32;
         // Rounding to f32 may land on `hi` itself, which is the image of `lo`.
         if wrapped >= self.hi[axis] {
-            (self.lo[axis], count as i32 + 1)
+            (self.lo[axis], (count as i32).saturating_add(1))
         } else {
             // Not `max`: that would turn a NaN into `lo` and hide a run that has blown up.
             (if wrapped < self.lo[axis] { self.lo[axis] } else { wrapped }, count as i32)
