@@ -84,8 +84,12 @@ pub struct Reference {
 /// Forces and energies in float64, of the pairs that the f32 predicate accepts. Displacements are recomputed in f64
 /// from the f32 positions and shifts.
 pub fn evaluate(system: &System) -> Reference {
-    let pairs = pairs(&system.sim_box, &system.particles, &system.radii);
-    with_potential!(&system.interaction.potential, p => sum(system, &pairs, p))
+    evaluate_pairs(system, &pairs(&system.sim_box, &system.particles, &system.radii))
+}
+
+/// As [`evaluate`], of the given pairs.
+pub fn evaluate_pairs(system: &System, pairs: &[Pair]) -> Reference {
+    with_potential!(&system.interaction.potential, p => sum(system, pairs, p))
 }
 
 fn sum<P: PairPotential>(system: &System, pairs: &[Pair], potential: &P) -> Reference {
