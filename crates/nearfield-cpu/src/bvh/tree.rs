@@ -71,6 +71,7 @@ impl Tree {
             self.levels[0].fill(Node::EMPTY);
             return;
         }
+        let last_leaf = self.leaves - 1;
         let (particle, radius) = (&slots.particle[..used], &slots.radius);
         self.levels[0]
             .par_iter_mut()
@@ -86,7 +87,7 @@ impl Tree {
                     particle: &particle[range.clone()],
                     radius: radius.get(range).unwrap_or_default(),
                     position: [x, y, z],
-                    shift: std::array::from_fn(|lane| leaf_shift(index * LANES + lane)),
+                    shift: std::array::from_fn(|lane| leaf_shift((index * LANES + lane).min(last_leaf))),
                 });
             });
     }
