@@ -19,7 +19,7 @@ use images::{Scene, Views};
 pub(crate) use morton::MortonOrder;
 use nearfield_core::{Images, SimBox, predicate::conservative_range};
 use node::Aabb;
-use pulp::Arch;
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 use std::ops::Range;
 use tree::{Tree, half_width};
@@ -61,6 +61,8 @@ pub struct Bvh {
     slots: Slots,
     tree: Tree,
     views: Views,
+    /// The images of the box, and what moves a query back from each into the tree.
+    images: Vec<([i8; 3], [f32; 3])>,
     n_particles: usize,
     /// Radius of all, where they are not per particle.
     uniform_radius: Option<f32>,
@@ -78,6 +80,7 @@ impl Bvh {
             slots: Slots::default(),
             tree: Tree::default(),
             views: Views::new(images),
+            images: vec![([0; 3], [0.0; 3])],
             n_particles: 0,
             uniform_radius: None,
             sim_box: None,
@@ -152,25 +155,9 @@ impl Bvh {
         let extent = corners.as_flattened().iter().fold(0.0, |extent: f32, c| extent.max(c.abs()));
         self.slack = if self.n_particles == 0 { 0.0 } else { conservative_range(0.0, extent) };
         self.views.update(&Scene { sim_box, root, largest: half_width(largest) });
+        self.images.clear();
+        self.images.extend(sim_box.images().into_iter().map(|image| (image, sim_box.shift(image.map(|c| -c)))));
         self.sim_box = Some(*sim_box);
-    }
-
-    /// [`Structure::runs`], to be inlined where the instruction set is known.
-    #[inline(always)]
-    fn trace(&self, group: &GroupBox, out: &mut Vec<Run>) {
-        let query = Aabb { lo: group.lo.map(|c| c - self.slack), hi: group.hi.map(|c| c + self.slack) };
-        let ghosts = self.views.ghosts();
-        self.views.for_each(&query, |view, shift| {
-            let moved = query.translated(shift.map(|s| -s));
-            self.tree.trace(&moved, |leaf| {
-                let image = ghosts.map_or(view, |ghosts| ghosts.image(leaf));
-                let start = (leaf * LANES) as u32;
-                match out.last_mut() {
-                    Some(last) if last.end == start && last.image == image => last.end += LANES as u32,
-                    _ => out.push(Run { start, end: start + LANES as u32, image }),
-                }
-            });
-        });
     }
 }
 
@@ -188,10 +175,45 @@ impl Structure for Bvh {
     }
 
     fn runs(&self, group: &GroupBox, out: &mut Vec<Run>) {
-        self.arch.dispatch(
-            #[inline(always)]
-            || self.trace(group, out),
-        );
+        self.arch.dispatch(Trace { bvh: self, group, out });
+    }
+}
+
+/// [`Structure::runs`], compiled for each instruction set.
+struct Trace<'a> {
+    bvh: &'a Bvh,
+    group: &'a GroupBox,
+    out: &'a mut Vec<Run>,
+}
+
+impl WithSimd for Trace<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { bvh, group, out } = self;
+        let query = Aabb { lo: group.lo, hi: group.hi }.inflated(bvh.slack);
+        let ghosts = bvh.views.ghosts();
+        let mut visible = bvh.views.visible(&query);
+        while visible != 0 {
+            let (view, back) = bvh.images[visible.trailing_zeros() as usize];
+            visible &= visible - 1;
+            bvh.tree.trace(
+                &query.translated(back),
+                #[inline(always)]
+                |leaf| {
+                    let image = match ghosts {
+                        Some(ghosts) => ghosts.image(leaf),
+                        None => view,
+                    };
+                    let start = (leaf * LANES) as u32;
+                    match out.last_mut() {
+                        Some(last) if last.end == start && last.image == image => last.end += LANES as u32,
+                        _ => out.push(Run { start, end: start + LANES as u32, image }),
+                    }
+                },
+            );
+        }
     }
 }
 

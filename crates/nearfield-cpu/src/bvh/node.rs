@@ -1,4 +1,7 @@
 //! Sixteen boxes as a structure of arrays, so that one SIMD compare per face tests them all.
+//!
+//! Kernels are plain loops that vectorise where they are inlined under a wider instruction set. They avoid closures
+//! and iterator adapters, which the compiler does not promise to inline there.
 
 use crate::LANES;
 
@@ -13,8 +16,23 @@ impl Aabb {
     /// The box of nothing: overlaps nothing and leaves a union unchanged.
     pub const EMPTY: Self = Self { lo: [f32::INFINITY; 3], hi: [f32::NEG_INFINITY; 3] };
 
-    pub fn translated(&self, by: [f32; 3]) -> Self {
-        Self { lo: std::array::from_fn(|a| self.lo[a] + by[a]), hi: std::array::from_fn(|a| self.hi[a] + by[a]) }
+    #[inline(always)]
+    pub fn translated(mut self, by: [f32; 3]) -> Self {
+        for axis in 0..3 {
+            self.lo[axis] += by[axis];
+            self.hi[axis] += by[axis];
+        }
+        self
+    }
+
+    /// The box and all within `margin` of it on each axis.
+    #[inline(always)]
+    pub fn inflated(mut self, margin: f32) -> Self {
+        for axis in 0..3 {
+            self.lo[axis] -= margin;
+            self.hi[axis] += margin;
+        }
+        self
     }
 
     pub fn holds(&self, inner: &Self) -> bool {
@@ -54,7 +72,12 @@ impl Node {
     /// The union of the children.
     #[inline(always)]
     pub fn bounds(&self) -> Aabb {
-        Aabb { lo: self.lo.map(smallest), hi: self.hi.map(largest) }
+        let mut bounds = Aabb::EMPTY;
+        for axis in 0..3 {
+            bounds.lo[axis] = smallest(self.lo[axis]);
+            bounds.hi[axis] = largest(self.hi[axis]);
+        }
+        bounds
     }
 
     /// Bit `l` is set when child `l` overlaps `query`, faces included.
@@ -70,7 +93,11 @@ impl Node {
                 & (self.hi[2][lane] >= query.lo[2]);
             *hit = u32::from(inside) << lane;
         }
-        hit.iter().fold(0, |mask, bit| mask | bit)
+        let mut mask = 0;
+        for bit in hit {
+            mask |= bit;
+        }
+        mask
     }
 }
 

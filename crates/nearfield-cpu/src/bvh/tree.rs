@@ -5,7 +5,7 @@
 use super::node::{Aabb, Node, largest, smallest};
 use crate::{Input, InputRadii, LANES, Slots};
 use nearfield_core::predicate::conservative_range;
-use pulp::Arch;
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 const SLOTS_PER_NODE: usize = LANES * LANES;
@@ -49,11 +49,29 @@ impl Tree {
 
     /// Gathers positions into `slots` and fits every box, leaf `l` moved by `leaf_shift(l)`.
     pub fn fit(&mut self, arch: Arch, slots: &mut Slots, input: &Input, leaf_shift: impl Fn(usize) -> [f32; 3] + Sync) {
+        self.fit_leaves(arch, slots, input, leaf_shift);
+        for level in 1..self.levels.len() {
+            let (below, above) = self.levels.split_at_mut(level);
+            let children = below[level - 1].par_chunks(LANES);
+            above[0].par_iter_mut().zip(children).with_min_len(GRAIN).for_each(|(node, children)| {
+                *node = arch.dispatch(FitNode { children });
+            });
+        }
+    }
+
+    fn fit_leaves(
+        &mut self,
+        arch: Arch,
+        slots: &mut Slots,
+        input: &Input,
+        leaf_shift: impl Fn(usize) -> [f32; 3] + Sync,
+    ) {
         let used = self.leaves * LANES;
         if used == 0 {
             self.levels[0].fill(Node::EMPTY);
             return;
         }
+        let last_leaf = self.leaves - 1;
         let (particle, radius) = (&slots.particle[..used], &slots.radius);
         self.levels[0]
             .par_iter_mut()
@@ -63,35 +81,15 @@ impl Tree {
             .with_min_len(GRAIN)
             .enumerate()
             .for_each(|(index, (((node, x), y), z))| {
-                let first = index * SLOTS_PER_NODE;
-                let count = x.len();
-                let particle = &particle[first..first + count];
-                let radii = match input.radii {
-                    InputRadii::Uniform(r) => SlotRadii::Uniform(r),
-                    InputRadii::PerParticle(_) => SlotRadii::PerSlot(&radius[first..first + count]),
-                };
-                let leaf_shift = |lane: usize| leaf_shift(index * LANES + lane);
-                let mut node_slots = NodeSlots { particle, radii, position: [x, y, z] };
-                arch.dispatch(
-                    #[inline(always)]
-                    || *node = node_slots.fit(input, leaf_shift),
-                );
+                let range = index * SLOTS_PER_NODE..index * SLOTS_PER_NODE + x.len();
+                *node = arch.dispatch(FitLeaves {
+                    input,
+                    particle: &particle[range.clone()],
+                    radius: radius.get(range).unwrap_or_default(),
+                    position: [x, y, z],
+                    shift: std::array::from_fn(|lane| leaf_shift((index * LANES + lane).min(last_leaf))),
+                });
             });
-        for level in 1..self.levels.len() {
-            let (below, above) = self.levels.split_at_mut(level);
-            let below = &below[level - 1];
-            above[0].par_iter_mut().zip(below.par_chunks(LANES)).with_min_len(GRAIN).for_each(|(node, children)| {
-                arch.dispatch(
-                    #[inline(always)]
-                    || {
-                        *node = Node::EMPTY;
-                        for (lane, child) in children.iter().enumerate() {
-                            node.set(lane, &child.bounds());
-                        }
-                    },
-                );
-            });
-        }
     }
 
     /// The box of everything.
@@ -165,46 +163,72 @@ impl Tree {
     }
 }
 
-#[derive(Clone, Copy)]
-enum SlotRadii<'a> {
-    Uniform(f32),
-    PerSlot(&'a [f32]),
-}
-
-/// The slots below one node of the lowest level.
-struct NodeSlots<'a> {
+/// Gathers positions for the leaves below one node of the lowest level and finds their boxes.
+struct FitLeaves<'a> {
+    input: &'a Input<'a>,
     particle: &'a [u32],
-    radii: SlotRadii<'a>,
+    /// Empty when uniform.
+    radius: &'a [f32],
     position: [&'a mut [f32]; 3],
+    shift: [[f32; 3]; LANES],
 }
 
-impl NodeSlots<'_> {
+impl WithSimd for FitLeaves<'_> {
+    type Output = Node;
+
     #[inline(always)]
-    fn fit(&mut self, input: &Input, leaf_shift: impl Fn(usize) -> [f32; 3]) -> Node {
+    fn with_simd<S: Simd>(self, _: S) -> Node {
+        let uniform = match self.input.radii {
+            InputRadii::Uniform(r) => half_width(r),
+            InputRadii::PerParticle(_) => 0.0,
+        };
         let mut node = Node::EMPTY;
         for (lane, particle) in self.particle.chunks_exact(LANES).enumerate() {
-            let first = lane * LANES;
-            let half: [f32; LANES] = match self.radii {
-                SlotRadii::Uniform(r) => [half_width(r); LANES],
-                SlotRadii::PerSlot(radii) => std::array::from_fn(|slot| half_width(radii[first + slot])),
-            };
-            let shift = leaf_shift(lane);
+            let slots = lane * LANES..(lane + 1) * LANES;
+            let mut half = [uniform; LANES];
+            if !self.radius.is_empty() {
+                for (half, &radius) in half.iter_mut().zip(&self.radius[slots.clone()]) {
+                    *half = half_width(radius);
+                }
+            }
             let mut leaf = Aabb::EMPTY;
             for axis in 0..3 {
-                let out = &mut self.position[axis][first..first + LANES];
+                let out = &mut self.position[axis][slots.clone()];
+                let coordinates = self.input.position[axis];
                 for (out, &particle) in out.iter_mut().zip(particle) {
-                    *out = input.position[axis].get(particle as usize).copied().unwrap_or(Slots::FAR);
+                    // Padding is the particle `u32::MAX`, which does not exist.
+                    *out =
+                        if (particle as usize) < coordinates.len() { coordinates[particle as usize] } else { Slots::FAR };
                 }
                 let (mut lo, mut hi) = ([f32::INFINITY; LANES], [f32::NEG_INFINITY; LANES]);
                 for slot in 0..LANES {
-                    let center = out[slot] + shift[axis];
+                    let center = out[slot] + self.shift[lane][axis];
                     // Padding must not reach the bounds.
                     lo[slot] = if out[slot] == Slots::FAR { f32::INFINITY } else { center - half[slot] };
                     hi[slot] = if out[slot] == Slots::FAR { f32::NEG_INFINITY } else { center + half[slot] };
                 }
-                (leaf.lo[axis], leaf.hi[axis]) = (smallest(lo), largest(hi));
+                leaf.lo[axis] = smallest(lo);
+                leaf.hi[axis] = largest(hi);
             }
             node.set(lane, &leaf);
+        }
+        node
+    }
+}
+
+/// The node of up to sixteen nodes.
+struct FitNode<'a> {
+    children: &'a [Node],
+}
+
+impl WithSimd for FitNode<'_> {
+    type Output = Node;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Node {
+        let mut node = Node::EMPTY;
+        for (lane, child) in self.children.iter().enumerate() {
+            node.set(lane, &child.bounds());
         }
         node
     }

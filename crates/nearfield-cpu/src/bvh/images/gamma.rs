@@ -8,39 +8,38 @@ use super::{Aabb, Scene};
 /// When to send gamma rays.
 #[derive(Clone, Debug, Default)]
 pub(in crate::bvh) struct Gamma {
-    rays: Vec<Ray>,
+    images: Vec<[i8; 3]>,
     /// Queries above this reach an upper face, where image +1 begins.
     upper: [f32; 3],
     /// Queries below this reach a lower face.
     lower: [f32; 3],
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Ray {
-    image: [i8; 3],
-    shift: [f32; 3],
-}
-
 impl Gamma {
     pub fn update(&mut self, scene: &Scene) {
         let Scene { sim_box, largest, .. } = *scene;
-        self.rays.clear();
-        self.rays.extend(sim_box.images().into_iter().map(|image| Ray { image, shift: sim_box.shift(image) }));
+        self.images = sim_box.images();
         self.upper = sim_box.hi().map(|face| face - largest);
         self.lower = sim_box.lo().map(|face| face + largest);
     }
 
+    /// The images to which `query` sends rays, as bits.
     #[inline(always)]
-    pub fn for_each(&self, query: &Aabb, mut visit: impl FnMut([i8; 3], [f32; 3])) {
-        for ray in &self.rays {
-            let triggered = (0..3).all(|axis| match ray.image[axis] {
-                0 => true,
-                1.. => query.hi[axis] >= self.upper[axis],
-                _ => query.lo[axis] <= self.lower[axis],
-            });
-            if triggered {
-                visit(ray.image, ray.shift);
-            }
+    pub fn visible(&self, query: &Aabb) -> u32 {
+        // For each axis, whether the query is near the lower face, anywhere, near the upper face.
+        let mut near = [[false, true, false]; 3];
+        for axis in 0..3 {
+            near[axis][0] = query.lo[axis] <= self.lower[axis];
+            near[axis][2] = query.hi[axis] >= self.upper[axis];
         }
+        let mut visible = 0;
+        for (bit, image) in self.images.iter().enumerate() {
+            let mut triggered = true;
+            for axis in 0..3 {
+                triggered &= near[axis][(image[axis] + 1) as usize];
+            }
+            visible |= u32::from(triggered) << bit;
+        }
+        visible
     }
 }

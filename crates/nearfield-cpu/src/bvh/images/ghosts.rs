@@ -125,7 +125,7 @@ impl Ghosts {
     /// The image of leaf `leaf`; `[0, 0, 0]` for leaves of real particles.
     #[inline(always)]
     pub fn image(&self, leaf: usize) -> [i8; 3] {
-        leaf.checked_sub(self.real_leaves()).map_or([0; 3], |ghost_leaf| self.leaf_images[ghost_leaf])
+        if leaf < self.real_leaves() { [0; 3] } else { self.leaf_images[leaf - self.real_leaves()] }
     }
 
     pub fn bytes(&self) -> usize {
@@ -134,6 +134,7 @@ impl Ghosts {
             + self.lists.iter().map(|list| size_of::<u32>() * list.capacity()).sum::<usize>()
     }
 
+    #[inline(always)]
     fn real_leaves(&self) -> usize {
         self.faces.len() / LANES
     }

@@ -7,35 +7,28 @@ use super::{Aabb, Scene};
 use crate::{LANES, bvh::node::Node};
 
 /// The top level: the tree's box in each image, sixteen to a node.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(in crate::bvh) struct Instances {
-    top: Vec<Node>,
-    instances: Vec<([i8; 3], [f32; 3])>,
+    top: [Node; 2],
+}
+
+impl Default for Instances {
+    fn default() -> Self {
+        Self { top: [Node::EMPTY; 2] }
+    }
 }
 
 impl Instances {
     pub fn update(&mut self, scene: &Scene) {
-        self.instances.clear();
-        self.instances.extend(scene.sim_box.images().into_iter().map(|image| (image, scene.sim_box.shift(image))));
-        self.top.clear();
-        for instances in self.instances.chunks(LANES) {
-            let mut node = Node::EMPTY;
-            for (lane, (_, shift)) in instances.iter().enumerate() {
-                node.set(lane, &scene.root.translated(*shift));
-            }
-            self.top.push(node);
+        *self = Self::default();
+        for (bit, image) in scene.sim_box.images().into_iter().enumerate() {
+            self.top[bit / LANES].set(bit % LANES, &scene.root.translated(scene.sim_box.shift(image)));
         }
     }
 
+    /// The images whose box `query` overlaps, as bits.
     #[inline(always)]
-    pub fn for_each(&self, query: &Aabb, mut visit: impl FnMut([i8; 3], [f32; 3])) {
-        for (node, instances) in self.top.iter().zip(self.instances.chunks(LANES)) {
-            let mut hits = node.overlap(query);
-            while hits != 0 {
-                let (image, shift) = instances[hits.trailing_zeros() as usize];
-                visit(image, shift);
-                hits &= hits - 1;
-            }
-        }
+    pub fn visible(&self, query: &Aabb) -> u32 {
+        self.top[0].overlap(query) | self.top[1].overlap(query) << LANES
     }
 }

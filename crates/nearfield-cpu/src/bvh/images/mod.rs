@@ -46,18 +46,18 @@ impl Views {
         }
     }
 
-    /// Calls `visit(image, shift)` for each image in which the tree is to be traced, by rays of origins moved by
-    /// `-shift`.
+    /// The images in which the tree is to be traced for `query`: bit `b` is entry `b` of [`SimBox::images`].
     #[inline(always)]
-    pub fn for_each(&self, query: &Aabb, mut visit: impl FnMut([i8; 3], [f32; 3])) {
+    pub fn visible(&self, query: &Aabb) -> u32 {
         match self {
-            Self::Gamma(gamma) => gamma.for_each(query, visit),
-            Self::Instances(instances) => instances.for_each(query, visit),
-            Self::Ghosts(_) => visit([0; 3], [0.0; 3]),
+            Self::Gamma(gamma) => gamma.visible(query),
+            Self::Instances(instances) => instances.visible(query),
+            Self::Ghosts(_) => 1,
         }
     }
 
     /// The mirror particles, where there are any.
+    #[inline(always)]
     pub fn ghosts(&self) -> Option<&Ghosts> {
         match self {
             Self::Ghosts(ghosts) => Some(ghosts),
