@@ -4,8 +4,19 @@
 //! applies the predicate to them and does something with the pairs. Structures and consumers know nothing of each
 //! other, so each combination is exact once each part is.
 
+mod brute;
+mod grid;
+mod lanes;
+mod list;
+mod search;
 mod slots;
 mod structure;
+#[cfg(test)]
+mod testing;
 
+pub use brute::Brute;
+pub use grid::Grid;
+pub use list::{ListBuilder, Row, Rows, neighbor_list};
+pub use search::{Counts, Pair, bipartite_list, count_neighbors, for_each_pair};
 pub use slots::{Input, InputRadii, LANES, Slots};
 pub use structure::{GroupBox, Run, Structure};
