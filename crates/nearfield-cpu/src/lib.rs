@@ -8,19 +8,25 @@ mod brute;
 mod bvh;
 mod engine;
 mod exact_sum;
+mod grid;
 mod kernel;
+mod lanes;
+mod list;
 mod parallel;
 mod physics;
+mod search;
 mod slots;
 mod structure;
+#[cfg(test)]
+mod testing;
 
 pub use brute::Brute;
 pub use bvh::{Bvh, Refit};
 pub use engine::CpuEngine;
+pub use grid::Grid;
+pub use list::{ListBuilder, Row, Rows, neighbor_list};
+pub use search::{Counts, Pair, bipartite_list, count_neighbors, for_each_pair};
 pub use slots::{Input, InputRadii, LANES, Slots};
-type Grid = Brute;
-mod list { pub use crate::liststub::*; }
-mod liststub;
 pub use structure::{GroupBox, Run, Structure};
 
 /// Name of the instruction set that kernels run with here.

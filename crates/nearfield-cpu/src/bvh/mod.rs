@@ -177,6 +177,10 @@ impl Structure for Bvh {
     fn runs(&self, group: &GroupBox, out: &mut Vec<Run>) {
         self.arch.dispatch(Trace { bvh: self, group, out });
     }
+
+    fn complete(&self) -> bool {
+        self.uniform_radius.is_some()
+    }
 }
 
 /// [`Structure::runs`], compiled for each instruction set.

@@ -5,7 +5,7 @@ use super::{
     motion::Reference,
     reorder,
     results::Results,
-    rt_list::StoredList,
+    rt_list::{Around, Outcome, StoredList},
     state::State,
 };
 use crate::{
@@ -86,7 +86,16 @@ impl Loaded {
                 scatter(physics, structure, sums);
                 sums.for_each(&finish);
             }
-            Method::RtList => list.gather(structure, state, physics, plan, report, &finish),
+            Method::RtList => {
+                let around = Around { state, physics, plan, structure, sums, report };
+                if list.gather(around, &finish) == Outcome::NeedsBuildWithoutSkin {
+                    let input = state.input(physics, list.radii(state, physics));
+                    upkeep.update(Action::Build, &input, report);
+                    let structure = upkeep.index.structure();
+                    let again = list.gather(Around { state, physics, plan, structure, sums, report }, &finish);
+                    debug_assert_eq!(again, Outcome::Done, "there is no skin left to take off");
+                }
+            }
         }
         self.account(start.elapsed().as_secs_f64());
         if let Some(particle) = watch.first() {
@@ -111,7 +120,7 @@ impl Loaded {
             }
             self.since_reorder = 0;
         }
-        let radii = self.list.inflated_radii(&self.state, &self.physics);
+        let radii = self.list.radii(&self.state, &self.physics);
         let input = self.state.input(&self.physics, radii);
         self.upkeep.update(action, &input, &mut self.report);
         if self.upkeep.was_built() && self.upkeep.needs_motion() {
