@@ -52,6 +52,10 @@ impl<T: Real> PairCoefficients<T> {
 
 /// Where a kernel gets a pair's coefficients from.
 pub trait Coefficients: Send + Sync {
+    /// Whether ranges differ from pair to pair; otherwise the one passed in is the uniform cutoff.
+    const VARIABLE_RANGE: bool;
+    /// Whether types matter.
+    const TYPED: bool;
     /// Coefficients of a pair of types with the given range.
     fn get(&self, kind_i: u32, kind_j: u32, range: f32) -> PairCoefficients<f32>;
 }
@@ -61,6 +65,9 @@ pub trait Coefficients: Send + Sync {
 pub struct Single(pub PairCoefficients<f32>);
 
 impl Coefficients for Single {
+    const VARIABLE_RANGE: bool = false;
+    const TYPED: bool = false;
+
     #[inline(always)]
     fn get(&self, _: u32, _: u32, _: f32) -> PairCoefficients<f32> {
         self.0
@@ -75,6 +82,9 @@ pub struct Typed {
 }
 
 impl Coefficients for Typed {
+    const VARIABLE_RANGE: bool = false;
+    const TYPED: bool = true;
+
     #[inline(always)]
     fn get(&self, kind_i: u32, kind_j: u32, _: f32) -> PairCoefficients<f32> {
         self.table[(kind_i * self.n_types + kind_j) as usize]
@@ -92,6 +102,9 @@ pub struct RadiusScaled<'a, P> {
 }
 
 impl<P: PairPotential> Coefficients for RadiusScaled<'_, P> {
+    const VARIABLE_RANGE: bool = true;
+    const TYPED: bool = true;
+
     #[inline(always)]
     fn get(&self, kind_i: u32, kind_j: u32, range: f32) -> PairCoefficients<f32> {
         let epsilon =

@@ -1,62 +1,65 @@
-//! Two ways of summing pair contributions: fast in f32 lanes, or exactly and so independent of order.
+//! What becomes of pair contributions: summed fast in f32 lanes, summed exactly and so independent of order, or kept.
 
-use super::Sums;
+use super::{Sums, block::Lanes};
 use crate::LANES;
 
-/// Lanes of contributions of one block of candidates; lanes that are not neighbours hold zeros.
-pub(super) struct Contribution {
-    pub force: [[f32; LANES]; 3],
-    pub energy: [f32; LANES],
-    pub virial: [f32; LANES],
+/// Takes the contributions of a block, lane by lane; lanes that are not neighbours give zeros.
+pub(super) trait Accumulator: Copy {
+    /// Adds a force on the query.
+    fn add_force(&mut self, lane: usize, x: f32, y: f32, z: f32);
+    /// Adds a pair's energy, virial and count.
+    fn add_energy(&mut self, lane: usize, energy: f32, virial: f32, count: u32);
 }
 
-/// A query's running sums.
-pub(super) trait Accumulator: Copy {
+/// An accumulator whose lanes add up to a query's sums.
+pub(super) trait Summing: Accumulator {
     /// Zero, with the quantum of exact sums.
     fn new(grain: Grain) -> Self;
-    /// Adds a block of lanes.
-    fn add<const ENERGY: bool>(&mut self, block: &Contribution);
     /// The sums over lanes.
-    fn finish(&self, neighbors: u32) -> Sums;
+    fn finish(&self) -> Sums;
 }
 
 /// f32 sums, one a lane: fastest, the result depends on the order of candidates in its last bits.
 #[derive(Clone, Copy)]
-pub(super) struct Lanes {
-    force: [[f32; LANES]; 3],
-    energy: [f32; LANES],
-    virial: [f32; LANES],
+pub(super) struct Fast {
+    x: Lanes<f32>,
+    y: Lanes<f32>,
+    z: Lanes<f32>,
+    energy: Lanes<f32>,
+    virial: Lanes<f32>,
+    count: Lanes<u32>,
 }
 
-impl Accumulator for Lanes {
+impl Accumulator for Fast {
+    #[inline(always)]
+    fn add_force(&mut self, lane: usize, x: f32, y: f32, z: f32) {
+        self.x[lane] += x;
+        self.y[lane] += y;
+        self.z[lane] += z;
+    }
+
+    #[inline(always)]
+    fn add_energy(&mut self, lane: usize, energy: f32, virial: f32, count: u32) {
+        self.energy[lane] += energy;
+        self.virial[lane] += virial;
+        self.count[lane] += count;
+    }
+}
+
+impl Summing for Fast {
     #[inline(always)]
     fn new(_: Grain) -> Self {
-        Self { force: [[0.0; LANES]; 3], energy: [0.0; LANES], virial: [0.0; LANES] }
+        let zero = [0.0; LANES];
+        Self { x: zero, y: zero, z: zero, energy: zero, virial: zero, count: [0; LANES] }
     }
 
     #[inline(always)]
-    fn add<const ENERGY: bool>(&mut self, block: &Contribution) {
-        for axis in 0..3 {
-            for l in 0..LANES {
-                self.force[axis][l] += block.force[axis][l];
-            }
-        }
-        if ENERGY {
-            for l in 0..LANES {
-                self.energy[l] += block.energy[l];
-                self.virial[l] += block.virial[l];
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn finish(&self, neighbors: u32) -> Sums {
-        let total = |lanes: &[f32; LANES]| lanes.iter().map(|&v| f64::from(v)).sum::<f64>();
+    fn finish(&self) -> Sums {
         Sums {
-            force: [total(&self.force[0]) as f32, total(&self.force[1]) as f32, total(&self.force[2]) as f32],
+            force: [total(&self.x) as f32, total(&self.y) as f32, total(&self.z) as f32],
             energy: 0.5 * total(&self.energy),
             virial: 0.5 * total(&self.virial),
-            neighbors,
+            neighbors: self.count.iter().sum(),
         }
     }
 }
@@ -98,40 +101,90 @@ impl Grain {
 #[derive(Clone, Copy)]
 pub(super) struct Exact {
     grain: Grain,
-    force: [[f64; LANES]; 3],
-    energy: [f64; LANES],
-    virial: [f64; LANES],
+    x: Lanes<f64>,
+    y: Lanes<f64>,
+    z: Lanes<f64>,
+    energy: Lanes<f64>,
+    virial: Lanes<f64>,
+    count: Lanes<u32>,
 }
 
 impl Accumulator for Exact {
     #[inline(always)]
+    fn add_force(&mut self, lane: usize, x: f32, y: f32, z: f32) {
+        self.x[lane] += self.grain.force(x);
+        self.y[lane] += self.grain.force(y);
+        self.z[lane] += self.grain.force(z);
+    }
+
+    #[inline(always)]
+    fn add_energy(&mut self, lane: usize, energy: f32, virial: f32, count: u32) {
+        self.energy[lane] += self.grain.energy(energy);
+        self.virial[lane] += self.grain.energy(virial);
+        self.count[lane] += count;
+    }
+}
+
+impl Summing for Exact {
+    #[inline(always)]
     fn new(grain: Grain) -> Self {
-        Self { grain, force: [[0.0; LANES]; 3], energy: [0.0; LANES], virial: [0.0; LANES] }
+        let zero = [0.0; LANES];
+        Self { grain, x: zero, y: zero, z: zero, energy: zero, virial: zero, count: [0; LANES] }
     }
 
     #[inline(always)]
-    fn add<const ENERGY: bool>(&mut self, block: &Contribution) {
-        for axis in 0..3 {
-            for l in 0..LANES {
-                self.force[axis][l] += self.grain.force(block.force[axis][l]);
-            }
-        }
-        if ENERGY {
-            for l in 0..LANES {
-                self.energy[l] += self.grain.energy(block.energy[l]);
-                self.virial[l] += self.grain.energy(block.virial[l]);
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn finish(&self, neighbors: u32) -> Sums {
-        let total = |lanes: &[f64; LANES]| lanes.iter().sum::<f64>();
+    fn finish(&self) -> Sums {
         Sums {
-            force: [total(&self.force[0]) as f32, total(&self.force[1]) as f32, total(&self.force[2]) as f32],
+            force: [total(&self.x) as f32, total(&self.y) as f32, total(&self.z) as f32],
             energy: 0.5 * total(&self.energy),
             virial: 0.5 * total(&self.virial),
-            neighbors,
+            neighbors: self.count.iter().sum(),
         }
     }
+}
+
+/// The contributions of one block, for consumers that look at each pair.
+#[derive(Clone, Copy)]
+pub(super) struct Kept {
+    pub x: Lanes<f32>,
+    pub y: Lanes<f32>,
+    pub z: Lanes<f32>,
+    pub energy: Lanes<f32>,
+    pub virial: Lanes<f32>,
+    /// One for neighbours, zero for the rest.
+    pub count: Lanes<u32>,
+}
+
+impl Kept {
+    #[inline(always)]
+    pub fn new() -> Self {
+        let zero = [0.0; LANES];
+        Self { x: zero, y: zero, z: zero, energy: zero, virial: zero, count: [0; LANES] }
+    }
+}
+
+impl Accumulator for Kept {
+    #[inline(always)]
+    fn add_force(&mut self, lane: usize, x: f32, y: f32, z: f32) {
+        self.x[lane] = x;
+        self.y[lane] = y;
+        self.z[lane] = z;
+    }
+
+    #[inline(always)]
+    fn add_energy(&mut self, lane: usize, energy: f32, virial: f32, count: u32) {
+        self.energy[lane] = energy;
+        self.virial[lane] = virial;
+        self.count[lane] = count;
+    }
+}
+
+/// The sum of lanes, in f64.
+#[inline(always)]
+fn total<T: Copy + Into<f64>>(lanes: &Lanes<T>) -> f64 {
+    let mut sum = 0.0;
+    for &lane in lanes {
+        sum += lane.into();
+    }
+    sum
 }

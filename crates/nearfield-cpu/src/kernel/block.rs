@@ -1,65 +1,60 @@
 //! One query against one block of [`LANES`] candidates: the predicate and the pair law.
+//!
+//! The loop over lanes is one flat loop, without closures or inner loops, and sums within it: anything else keeps the
+//! compiler from turning it into vector instructions, which costs a factor of ten.
 
-use super::{Query, accumulate::Contribution};
+use super::{Query, accumulate::Accumulator};
 use crate::LANES;
 use nearfield_core::{
     interaction::{Coefficients, PairLaw},
     predicate,
 };
 
+/// Lanes of one quantity.
+pub(super) type Lanes<T> = [T; LANES];
+
 /// Candidates of a block. Arrays are read whatever the mask says, so they must hold finite numbers.
 pub(super) struct Candidates<'a> {
-    pub position: [&'a [f32; LANES]; 3],
-    /// `None` when radii are uniform.
-    pub radius: Option<&'a [f32; LANES]>,
-    /// `None` when there is one type.
-    pub kind: Option<&'a [u32; LANES]>,
+    pub x: &'a Lanes<f32>,
+    pub y: &'a Lanes<f32>,
+    pub z: &'a Lanes<f32>,
+    /// Anything when radii are uniform.
+    pub radius: &'a Lanes<f32>,
+    /// Anything when there is one type.
+    pub kind: &'a Lanes<u32>,
     /// `image * box length`, added to each displacement; a lane each where images differ.
-    pub shift: [&'a [f32; LANES]; 3],
+    pub shift: &'a [Lanes<f32>; 3],
     /// Lanes at or beyond this are not part of the run.
     pub valid: u32,
     /// The lane that is the query itself, if below `LANES`.
     pub own: u32,
 }
 
-/// Evaluates a block: what its neighbours contribute to the query, and which lanes they are.
+/// Adds what the block's neighbours contribute to the query.
 #[inline(always)]
-pub(super) fn evaluate<L: PairLaw, C: Coefficients, const ENERGY: bool>(
+pub(super) fn evaluate<L: PairLaw, C: Coefficients, A: Accumulator, const ENERGY: bool>(
     law: &L,
     coefficients: &C,
     cap: f32,
     query: &Query,
     c: &Candidates,
-) -> (Contribution, [bool; LANES]) {
-    let mut out = Contribution { force: [[0.0; LANES]; 3], energy: [0.0; LANES], virial: [0.0; LANES] };
-    let mut inside = [false; LANES];
+    sums: &mut A,
+) {
     for l in 0..LANES {
-        let candidate = [c.position[0][l], c.position[1][l], c.position[2][l]];
-        let shift = [c.shift[0][l], c.shift[1][l], c.shift[2][l]];
-        let dr = predicate::displacement(query.position, candidate, shift);
+        let candidate = [c.x[l], c.y[l], c.z[l]];
+        let dr = predicate::displacement(query.position, candidate, [c.shift[0][l], c.shift[1][l], c.shift[2][l]]);
         let r2 = predicate::squared_length(dr);
-        let range = match c.radius {
-            Some(radius) => query.radius.max(radius[l]),
-            None => query.radius,
-        };
-        let kind = match c.kind {
-            Some(kind) => kind[l],
-            None => 0,
-        };
-        let lane = l as u32;
-        let is_inside = predicate::is_neighbor(r2, range) & (lane < c.valid) & (lane != c.own);
-        inside[l] = is_inside;
+        let range = if C::VARIABLE_RANGE { query.radius.max(c.radius[l]) } else { query.radius };
+        let kind = if C::TYPED { c.kind[l] } else { 0 };
+        let inside = predicate::is_neighbor(r2, range) & ((l as u32) < c.valid) & (l as u32 != c.own);
         let pair = coefficients.get(query.kind, kind, range);
         let f = law.f_over_r(r2, &pair).min(cap);
-        let f = if is_inside { f } else { 0.0 };
-        for axis in 0..3 {
-            out.force[axis][l] = -(f * dr[axis]);
-        }
+        let f = if inside { f } else { 0.0 };
+        sums.add_force(l, -(f * dr[0]), -(f * dr[1]), -(f * dr[2]));
         if ENERGY {
             let u = law.energy(r2, &pair).min(cap);
-            out.energy[l] = if is_inside { u } else { 0.0 };
-            out.virial[l] = if is_inside { f * r2 } else { 0.0 };
+            let u = if inside { u } else { 0.0 };
+            sums.add_energy(l, u, f * r2, u32::from(inside));
         }
     }
-    (out, inside)
 }

@@ -2,8 +2,8 @@
 
 use super::{
     Query, Sums,
-    accumulate::{Accumulator, Exact, Lanes},
-    block::{Candidates, evaluate},
+    accumulate::{Accumulator, Exact, Fast, Summing},
+    block::{Candidates, Lanes, evaluate},
     select::{Law, with_law},
 };
 use crate::{GroupBox, LANES, Run, Slots, Structure, physics::Physics};
@@ -47,8 +47,8 @@ fn dispatch<L: Law, C: Coefficients>(
     let arch = Arch::new();
     // Other potentials cost more than their sums do: only Lennard-Jones is compiled in all variants.
     match (exact || !L::FAST, energy || !L::FAST) {
-        (false, false) if L::FAST => arch.dispatch(Kernel::<_, _, Lanes, false>::new(task, law, coefficients, runs)),
-        (false, true) if L::FAST => arch.dispatch(Kernel::<_, _, Lanes, true>::new(task, law, coefficients, runs)),
+        (false, false) if L::FAST => arch.dispatch(Kernel::<_, _, Fast, false>::new(task, law, coefficients, runs)),
+        (false, true) if L::FAST => arch.dispatch(Kernel::<_, _, Fast, true>::new(task, law, coefficients, runs)),
         (true, false) if L::FAST => arch.dispatch(Kernel::<_, _, Exact, false>::new(task, law, coefficients, runs)),
         _ => arch.dispatch(Kernel::<_, _, Exact, true>::new(task, law, coefficients, runs)),
     }
@@ -68,7 +68,7 @@ impl<'a, L, C, A, const ENERGY: bool> Kernel<'a, L, C, A, ENERGY> {
     }
 }
 
-impl<L: PairLaw, C: Coefficients, A: Accumulator, const ENERGY: bool> NullaryFnOnce for Kernel<'_, L, C, A, ENERGY> {
+impl<L: PairLaw, C: Coefficients, A: Summing, const ENERGY: bool> NullaryFnOnce for Kernel<'_, L, C, A, ENERGY> {
     type Output = ();
 
     #[inline(always)]
@@ -88,14 +88,13 @@ impl<L: PairLaw, C: Coefficients, A: Accumulator, const ENERGY: bool> NullaryFnO
                 }
                 let query = slot_query(slots, slot, cutoff);
                 let mut sums = A::new(physics.grain);
-                let mut neighbors = 0;
                 for run in runs.iter() {
                     let shift = physics.sim_box.shift(run.image);
-                    neighbors += gather_run::<L, C, A, ENERGY>(
+                    gather_run::<L, C, A, ENERGY>(
                         law, coefficients, physics.cap, &query, slots, run, slot, shift, &mut sums,
                     );
                 }
-                (task.finish)(particle, &sums.finish(neighbors));
+                (task.finish)(particle, &sums.finish());
             }
         }
     }
@@ -113,36 +112,32 @@ fn gather_run<L: PairLaw, C: Coefficients, A: Accumulator, const ENERGY: bool>(
     own: usize,
     shift: [f32; 3],
     sums: &mut A,
-) -> u32 {
-    let shift = shift.map(|s| [s; LANES]);
-    let mut neighbors = 0;
+) {
+    let shift = [[shift[0]; LANES], [shift[1]; LANES], [shift[2]; LANES]];
     let mut s = run.start as usize;
     while s < run.end as usize {
-        let block = slot_block(slots, s, run.end as usize, own, &shift);
-        let (contribution, inside) = evaluate::<L, C, ENERGY>(law, coefficients, cap, query, &block);
-        sums.add::<ENERGY>(&contribution);
-        if ENERGY {
-            neighbors += inside.iter().map(|&b| u32::from(b)).sum::<u32>();
-        }
+        let block = slot_block::<C>(slots, s, run.end as usize, own, &shift);
+        evaluate::<L, C, A, ENERGY>(law, coefficients, cap, query, &block, sums);
         s += LANES;
     }
-    neighbors
 }
 
 /// The block of candidates that starts at slot `s`.
 #[inline(always)]
-pub(super) fn slot_block<'a>(
+pub(super) fn slot_block<'a, C: Coefficients>(
     slots: &'a Slots,
     s: usize,
     end: usize,
     own: usize,
-    shift: &'a [[f32; LANES]; 3],
+    shift: &'a [Lanes<f32>; 3],
 ) -> Candidates<'a> {
     Candidates {
-        position: [lanes(&slots.x, s), lanes(&slots.y, s), lanes(&slots.z, s)],
-        radius: (!slots.radius.is_empty()).then(|| lanes(&slots.radius, s)),
-        kind: (!slots.kind.is_empty()).then(|| lanes(&slots.kind, s)),
-        shift: [&shift[0], &shift[1], &shift[2]],
+        x: lanes(&slots.x, s),
+        y: lanes(&slots.y, s),
+        z: lanes(&slots.z, s),
+        radius: if C::VARIABLE_RANGE { lanes(&slots.radius, s) } else { &[0.0; LANES] },
+        kind: if C::TYPED && !slots.kind.is_empty() { lanes(&slots.kind, s) } else { &[0; LANES] },
+        shift,
         valid: (end - s) as u32,
         own: own.wrapping_sub(s).min(u32::MAX as usize) as u32,
     }

@@ -2,7 +2,7 @@
 
 use super::{
     Finish, Query,
-    accumulate::{Accumulator, Exact},
+    accumulate::{Exact, Summing},
     block::{Candidates, evaluate},
     select::with_law,
 };
@@ -95,12 +95,11 @@ impl<L: PairLaw, C: Coefficients> NullaryFnOnce for Kernel<'_, L, C> {
                 kind: self.input.kind.get(i).copied().unwrap_or(0),
             };
             let mut sums = Exact::new(self.physics.grain);
-            let mut neighbors = 0;
             for start in (0..indices.len()).step_by(LANES) {
                 let rest = if images.is_empty() { images } else { &images[start..] };
-                neighbors += self.block(&query, i, &indices[start..], rest, &mut sums);
+                self.block(&query, i, &indices[start..], rest, &mut sums);
             }
-            (self.finish)(particle, &sums.finish(neighbors));
+            (self.finish)(particle, &sums.finish());
         }
     }
 }
@@ -108,7 +107,7 @@ impl<L: PairLaw, C: Coefficients> NullaryFnOnce for Kernel<'_, L, C> {
 impl<L: PairLaw, C: Coefficients> Kernel<'_, L, C> {
     /// Evaluates the first `LANES` entries; lanes past the end repeat the last entry and are masked.
     #[inline(always)]
-    fn block(&self, query: &Query, i: usize, indices: &[u32], images: &[[i8; 3]], sums: &mut Exact) -> u32 {
+    fn block(&self, query: &Query, i: usize, indices: &[u32], images: &[[i8; 3]], sums: &mut Exact) {
         let mut position = [[0.0; LANES]; 3];
         let (mut radius, mut kind) = ([0.0; LANES], [0; LANES]);
         let mut shift = [[0.0; LANES]; 3];
@@ -133,16 +132,15 @@ impl<L: PairLaw, C: Coefficients> Kernel<'_, L, C> {
             }
         }
         let candidates = Candidates {
-            position: [&position[0], &position[1], &position[2]],
-            radius: matches!(self.input.radii, InputRadii::PerParticle(_)).then_some(&radius),
-            kind: (!self.input.kind.is_empty()).then_some(&kind),
-            shift: [&shift[0], &shift[1], &shift[2]],
+            x: &position[0],
+            y: &position[1],
+            z: &position[2],
+            radius: &radius,
+            kind: &kind,
+            shift: &shift,
             valid: indices.len().min(LANES) as u32,
             own: u32::MAX,
         };
-        let (contribution, inside) =
-            evaluate::<L, C, true>(self.law, self.coefficients, self.physics.cap, query, &candidates);
-        sums.add::<true>(&contribution);
-        inside.iter().map(|&b| u32::from(b)).sum()
+        evaluate::<L, C, _, true>(self.law, self.coefficients, self.physics.cap, query, &candidates, sums);
     }
 }

@@ -5,6 +5,7 @@
 
 use super::{
     Query, Sums,
+    accumulate::Kept,
     block::evaluate,
     gather::{GROUPS_PER_TASK, group_box, slot_block, slot_query},
     select::with_law,
@@ -125,18 +126,21 @@ impl<L: PairLaw, C: Coefficients> Kernel<'_, L, C> {
         let particle = slots.particle[slot];
         let (mut force, mut energy, mut virial, mut neighbors) = ([0.0; 3], 0.0, 0.0, 0);
         for run in runs {
-            let shift = self.physics.sim_box.shift(run.image).map(|s| [s; LANES]);
+            let shift = self.physics.sim_box.shift(run.image);
+            let shift = [[shift[0]; LANES], [shift[1]; LANES], [shift[2]; LANES]];
             let mut s = run.start as usize;
             while s < run.end as usize {
-                let block = slot_block(slots, s, run.end as usize, slot, &shift);
-                let (out, inside) = evaluate::<L, C, true>(self.law, self.coefficients, self.physics.cap, &query, &block);
-                for l in (0..LANES).filter(|&l| inside[l]) {
+                let block = slot_block::<C>(slots, s, run.end as usize, slot, &shift);
+                let mut out = Kept::new();
+                evaluate::<L, C, _, true>(self.law, self.coefficients, self.physics.cap, &query, &block, &mut out);
+                for l in (0..LANES).filter(|&l| out.count[l] != 0) {
                     let other = slots.particle[s + l];
                     if !acts(&query, particle, slots, s + l, other) {
                         continue;
                     }
-                    let f = [0, 1, 2].map(|axis| self.physics.grain.force(out.force[axis][l]));
-                    let (u, w) = (self.physics.grain.energy(out.energy[l]), self.physics.grain.energy(out.virial[l]));
+                    let grain = self.physics.grain;
+                    let f = [grain.force(out.x[l]), grain.force(out.y[l]), grain.force(out.z[l])];
+                    let (u, w) = (grain.energy(out.energy[l]), grain.energy(out.virial[l]));
                     self.sums.add(other as usize, f.map(|f| -f), u, w, 1);
                     for axis in 0..3 {
                         force[axis] += f[axis];
