@@ -191,7 +191,9 @@ impl Simulation {
     }
 
     fn thermo_of(&self, totals: &Totals) -> Thermo {
-        let time = self.step as f64 * f64::from(self.dynamics.dt);
+        // The shortest decimal of the f32 is what the user wrote: 0.005, not 0.004999999888.
+        let dt: f64 = self.dynamics.dt.to_string().parse().unwrap_or(f64::from(self.dynamics.dt));
+        let time = self.step as f64 * dt;
         Thermo::new(totals, self.system.particles.len(), self.system.sim_box.volume(), self.tail, self.step, time)
     }
 

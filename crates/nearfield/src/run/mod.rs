@@ -110,25 +110,15 @@ impl Run {
     fn run_segments(&mut self, progress: &mut dyn FnMut(Progress) -> ControlFlow<()>) -> Result<()> {
         let last = self.config.dynamics.steps;
         let every = self.config.output.checkpoint_every;
-        if self.simulation.step() == 0 {
-            self.run_to(0, last, progress)?;
-        }
-        while self.simulation.step() < last {
+        loop {
             let end = next_multiple(self.simulation.step(), every).unwrap_or(last).min(last);
-            self.run_to(end, last, progress)?;
+            self.simulation.run(end, &mut self.observers, &mut |p| progress(Progress { last_step: last, ..p }))?;
             self.save()?;
+            if end == last {
+                return Ok(());
+            }
             self.write_record(Status::Running)?;
         }
-        Ok(())
-    }
-
-    fn run_to(
-        &mut self,
-        end: u64,
-        last_step: u64,
-        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-    ) -> Result<()> {
-        self.simulation.run(end, &mut self.observers, &mut |p| progress(Progress { last_step, ..p }))
     }
 
     fn save(&mut self) -> Result<()> {
