@@ -28,8 +28,8 @@ fn compare(engine: &mut dyn Engine, expected: &Expected, what: &str) {
     let reference = &expected.reference;
     assert_eq!((found.force.len(), found.energy.len()), (reference.force.len(), reference.energy.len()), "{what}");
     for (i, force) in found.force.iter().enumerate() {
-        for axis in 0..3 {
-            let (found, exact, error) = (f64::from(force[axis]), reference.force[i][axis], expected.force_error[i]);
+        let error = expected.force_error[i];
+        for (axis, (found, exact)) in force.map(f64::from).into_iter().zip(reference.force[i]).enumerate() {
             assert!((found - exact).abs() <= error, "{what}: force {axis} on {i}: {found} for {exact} ± {error}");
         }
     }
