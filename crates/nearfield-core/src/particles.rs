@@ -1,12 +1,13 @@
 //! Particles as a structure of arrays.
 
 use crate::Vec3s;
+use serde::{Deserialize, Serialize};
 
 /// The state of N particles, each array `[N]`.
 ///
 /// Arrays are in input order, and an index is a particle's stable id: engines reorder copies of their own and give
 /// everything back in this order.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Particles {
     /// Positions, [length], inside the box on periodic axes.
     pub position: Vec3s,

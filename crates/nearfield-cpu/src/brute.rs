@@ -11,6 +11,16 @@ pub struct Brute {
 }
 
 impl Brute {
+    /// An empty one.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.slots.bytes()
+    }
+
     /// Copies the particles.
     pub fn build(&mut self, input: &Input) {
         self.slots.fill(input, 0..input.len() as u32);
@@ -33,6 +43,8 @@ impl Structure for Brute {
 
     fn runs(&self, _: &GroupBox, out: &mut Vec<Run>) {
         let end = self.slots.len() as u32;
-        out.extend(self.images.iter().map(|&image| Run { start: 0, end, image }));
+        if end > 0 {
+            out.extend(self.images.iter().map(|&image| Run { start: 0, end, image }));
+        }
     }
 }

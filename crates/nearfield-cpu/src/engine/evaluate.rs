@@ -4,12 +4,12 @@ use super::{
     maintain::Upkeep,
     motion::Reference,
     reorder,
-    results::{Results, Sink},
-    rt_list::StoredList,
+    results::Results,
+    rt_list::{Around, Outcome, StoredList},
     state::State,
 };
 use crate::{
-    kernel::{Finish, ScatterSums, Sums, gather, scatter},
+    kernel::{ScatterSums, Sums, gather, scatter},
     physics::Physics,
 };
 use nearfield_core::{
@@ -66,18 +66,37 @@ impl Loaded {
         self.results.prepare(self.state.len(), quantities.energy);
         let watch = NonFiniteWatch::default();
         let start = Instant::now();
-        let mut results = std::mem::take(&mut self.results);
-        {
-            let sink = results.sink();
-            let id = &self.state.id;
-            let finish = |i: u32, sums: &Sums| {
-                watch.see(sums.force, id[i as usize]);
-                // SAFETY: a query finishes each particle once.
-                unsafe { Sink::store(&sink, i as usize, sums) };
-            };
-            self.query(quantities, &finish);
+        let Self { plan, physics, state, results, upkeep, scatter: sums, list, report, .. } = self;
+        let structure = upkeep.index.structure();
+        let sink = results.sink();
+        let finish = |i: u32, sums: &Sums| {
+            watch.see(sums.force, state.id[i as usize]);
+            // SAFETY: each method below finishes each particle once.
+            unsafe { sink.store(i as usize, sums) };
+        };
+        match plan.method {
+            Method::Brute | Method::Cell => {
+                gather(physics, structure, plan.deterministic, quantities.energy, &finish);
+            }
+            // The order of candidates depends on when the BVH was built, which policies decide by the clock:
+            // exact sums keep results independent of it.
+            Method::RtBoxes | Method::RtPerse => gather(physics, structure, true, quantities.energy, &finish),
+            Method::RtForces => {
+                sums.reset(state.len());
+                scatter(physics, structure, sums);
+                sums.for_each(&finish);
+            }
+            Method::RtList => {
+                let around = Around { state, physics, plan, structure, sums, report };
+                if list.gather(around, &finish) == Outcome::NeedsBuildWithoutSkin {
+                    let input = state.input(physics, list.radii(state, physics));
+                    upkeep.update(Action::Build, &input, report);
+                    let structure = upkeep.index.structure();
+                    let again = list.gather(Around { state, physics, plan, structure, sums, report }, &finish);
+                    debug_assert_eq!(again, Outcome::Done, "there is no skin left to take off");
+                }
+            }
         }
-        self.results = results;
         self.account(start.elapsed().as_secs_f64());
         if let Some(particle) = watch.first() {
             return Err(self.diagnose(particle, step));
@@ -101,34 +120,13 @@ impl Loaded {
             }
             self.since_reorder = 0;
         }
-        let radii = self.list.inflated_radii(&self.state, &self.physics);
+        let radii = self.list.radii(&self.state, &self.physics);
         let input = self.state.input(&self.physics, radii);
         self.upkeep.update(action, &input, &mut self.report);
         if self.upkeep.was_built() && self.upkeep.needs_motion() {
             self.reference.set(&self.state);
         }
         self.list.invalidate();
-    }
-
-    /// Hands the sums of each particle to `finish`, once each.
-    pub fn query(&mut self, quantities: Quantities, finish: Finish) {
-        let structure = self.upkeep.index.structure();
-        match self.plan.method {
-            Method::Brute | Method::Cell => {
-                gather(&self.physics, structure, self.plan.deterministic, quantities.energy, finish);
-            }
-            // The order of candidates depends on when the BVH was built, which policies decide by the clock:
-            // exact sums keep results independent of it.
-            Method::RtBoxes | Method::RtPerse => gather(&self.physics, structure, true, quantities.energy, finish),
-            Method::RtForces => {
-                self.scatter.reset(self.state.len());
-                scatter(&self.physics, structure, &self.scatter);
-                self.scatter.for_each(finish);
-            }
-            Method::RtList => {
-                self.list.gather(structure, &self.state, &self.physics, &self.plan, &mut self.report, finish);
-            }
-        }
     }
 
     /// Books a query and tells the policy.

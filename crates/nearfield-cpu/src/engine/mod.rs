@@ -11,7 +11,7 @@ mod run;
 mod state;
 mod thermostat;
 
-use crate::{InputRadii, list, physics::Physics};
+use crate::InputRadii;
 use evaluate::Loaded;
 use nearfield_core::{
     Dynamics, Engine, Error, ListRequest, NeighborList, Particles, PerParticle, Plan, Quantities, Radii, Report,
@@ -116,7 +116,7 @@ impl Engine for CpuEngine {
         let input =
             crate::Input { sim_box: &loaded.physics.sim_box, position: [x, y, z], radii, kind: &particles.kind };
         let structure = maintain::build_fresh(&loaded.plan, &input);
-        Ok(list::neighbor_list(&*structure, &input, request))
+        Ok(crate::neighbor_list(&*structure, &input, request))
     }
 
     fn report(&self) -> Report {

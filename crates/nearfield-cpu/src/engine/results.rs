@@ -86,11 +86,12 @@ impl Loaded {
     pub fn totals(&self, quantities: Quantities, step: u64) -> Result<Totals> {
         let (state, results, n) = (&self.state, &self.results, self.state.len());
         let velocity = state.velocity.axes();
-        let kinetic = |i: usize| self.kinetic_energy_of(i);
+        let types = &self.physics.interaction.types;
+        let kinetic = |i: usize| state.kinetic_energy_of(i, types);
         let squared_force = |i: usize| results.force.get(i).iter().map(|&f| f64::from(f).powi(2)).sum::<f64>();
         let mut totals = Totals {
             kinetic_energy: exact_sum(n, kinetic),
-            momentum: velocity.map(|v| exact_sum(n, |i| self.mass(i) * f64::from(v[i]))),
+            momentum: velocity.map(|v| exact_sum(n, |i| state.mass(i, types) * f64::from(v[i]))),
             max_force: (0..n).into_par_iter().map(squared_force).reduce(|| 0.0, f64::max).sqrt(),
             ..Totals::default()
         };
@@ -102,20 +103,6 @@ impl Loaded {
             self.check_finite(step, "energy", totals.potential_energy, |i| results.energy[i])?;
         }
         Ok(totals)
-    }
-
-    fn mass(&self, i: usize) -> f64 {
-        f64::from(self.physics.interaction.types[self.state.kind(i) as usize].mass)
-    }
-
-    fn kinetic_energy_of(&self, i: usize) -> f64 {
-        let squared: f64 = self.state.velocity.get(i).iter().map(|&v| f64::from(v).powi(2)).sum();
-        0.5 * self.mass(i) * squared
-    }
-
-    /// Kinetic energy of all particles.
-    pub fn kinetic_energy(&self) -> f64 {
-        exact_sum(self.state.len(), |i| self.kinetic_energy_of(i))
     }
 
     fn check_finite(&self, step: u64, what: &'static str, total: f64, term: impl Fn(usize) -> f64) -> Result<()> {

@@ -1,7 +1,7 @@
 //! The particles on the device, in memory order.
 
-use crate::{Input, InputRadii, physics::Physics};
-use nearfield_core::{Particles, Radii, System, Vec3s};
+use crate::{Input, InputRadii, exact_sum::exact_sum, physics::Physics};
+use nearfield_core::{ParticleType, Particles, Radii, System, Vec3s};
 use rayon::prelude::*;
 
 /// State of N particles, each array `[N]` in memory order; `id` leads back to input order.
@@ -42,6 +42,24 @@ impl State {
     #[inline(always)]
     pub fn kind(&self, i: usize) -> u32 {
         self.kind.get(i).copied().unwrap_or(0)
+    }
+
+    /// Mass of particle `i`.
+    #[inline(always)]
+    pub fn mass(&self, i: usize, types: &[ParticleType]) -> f64 {
+        f64::from(types[self.kind(i) as usize].mass)
+    }
+
+    /// Kinetic energy of particle `i`.
+    #[inline(always)]
+    pub fn kinetic_energy_of(&self, i: usize, types: &[ParticleType]) -> f64 {
+        let squared: f64 = self.velocity.get(i).iter().map(|&v| f64::from(v).powi(2)).sum();
+        0.5 * self.mass(i, types) * squared
+    }
+
+    /// Kinetic energy of all particles, independent of their order.
+    pub fn kinetic_energy(&self, types: &[ParticleType]) -> f64 {
+        exact_sum(self.len(), |i| self.kinetic_energy_of(i, types))
     }
 
     /// The particles as a structure's input, with the radii that the structure shall cover.

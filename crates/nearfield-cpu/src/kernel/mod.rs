@@ -14,7 +14,7 @@ mod select;
 
 pub(crate) use accumulate::Grain;
 pub(crate) use gather::{Finish, gather};
-pub(crate) use rows::{Rows, gather_rows};
+pub(crate) use rows::{RowSource, gather_rows};
 pub(crate) use scatter::{ScatterSums, scatter};
 
 /// What a query's pairs add up to.
