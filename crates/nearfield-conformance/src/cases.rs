@@ -136,7 +136,7 @@ pub fn thousands() -> Vec<Case> {
 /// A hundred thousand particles at the density of a liquid.
 pub fn hundred_thousand() -> System {
     let sim_box = cube(50.0, [Periodic; 3]);
-    soft(sim_box, uniform(100_000, &sim_box, 11), Radii::Uniform(1.8))
+    soft(sim_box, uniform(100_000, &sim_box, 11), Radii::Uniform(1.4))
 }
 
 /// Every corner, edge and face centre, the last representable number below each upper face, and points just inside.

@@ -24,7 +24,8 @@ pub fn every_structure_finds_the_same_pairs_among_a_hundred_thousand_particles(f
         }
     });
     let (n, volume) = (system.particles.len() as f64, system.sim_box.volume());
-    let mean = n * (n - 1.0) / 2.0 * 4.0 / 3.0 * std::f64::consts::PI * 1.8f64.powi(3) / volume;
+    let mean =
+        n * (n - 1.0) / 2.0 * 4.0 / 3.0 * std::f64::consts::PI * f64::from(system.radii.largest()).powi(3) / volume;
     let found = counts.map_or(0.0, |counts| counts.0 as f64);
     assert!((found - mean).abs() < 6.0 * mean.sqrt(), "{found} pairs where a uniform gas has {mean}");
 }
