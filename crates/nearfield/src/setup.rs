@@ -14,7 +14,7 @@ use std::path::Path;
 /// Anything wrong with the input, naming the particle, line or key.
 pub fn system(config: &Config) -> Result<System> {
     let mut system = match config.source()? {
-        Source::Input(path) => return file_system(config, &config.folder.join(path)),
+        Source::Input(path) => return file_system(config, &config.folder.join(path), Some(config.boundary.axes())),
         Source::Generate(_) => {
             let (sim_box, particles, radii) = config.generate()?;
             System { sim_box, particles, radii, interaction: config.interaction()? }
@@ -25,22 +25,33 @@ pub fn system(config: &Config) -> Result<System> {
     Ok(system)
 }
 
-/// The validated, wrapped system of an input file, with the boundaries and interaction of a configuration. `-` reads
+/// The validated, wrapped system of an input file, with the interaction of a configuration. Without boundaries, the
+/// file's own are taken; where it has a box but does not say, periodic ones; where it has none, open ones. `-` reads
 /// standard input.
 ///
 /// # Errors
 /// As [`system`].
-pub fn file_system(config: &Config, path: &Path) -> Result<System> {
+pub fn file_system(config: &Config, path: &Path, boundary: Option<[Boundary; 3]>) -> Result<System> {
     let configuration = io::read(path, &io::ReadOptions::default())?;
-    let mut system = assemble(config, path, configuration)?;
+    let boundary = boundary.unwrap_or_else(|| match configuration.bounds {
+        Some(bounds) => bounds
+            .periodic
+            .map_or([Boundary::Periodic; 3], |axes| axes.map(|p| if p { Boundary::Periodic } else { Boundary::Open })),
+        None => [Boundary::Open; 3],
+    });
+    let mut system = assemble(config, path, configuration, boundary)?;
     system.validate().map_err(|source| Error::Input { path: path.to_owned(), source })?;
     system.wrap();
     Ok(system)
 }
 
-fn assemble(config: &Config, path: &Path, configuration: Configuration) -> Result<System> {
+fn assemble(
+    config: &Config,
+    path: &Path,
+    configuration: Configuration,
+    boundary: [Boundary; 3],
+) -> Result<System> {
     let n = configuration.len();
-    let boundary = config.boundary.axes();
     let sim_box = match configuration.bounds {
         Some(Bounds { lo, hi, .. }) => SimBox::new(lo, hi, boundary)?,
         None if boundary == [Boundary::Open; 3] => bounding_box(&configuration.position)?,

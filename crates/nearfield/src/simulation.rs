@@ -300,7 +300,8 @@ impl Simulation {
     /// # Errors
     /// When the engine cannot be loaded.
     pub fn checkpoint(&mut self) -> Result<Checkpoint> {
-        let checkpoint = Checkpoint::new(self.system(), self.plan.method, self.step);
+        let (method, step) = (self.plan.method, self.step);
+        let checkpoint = Checkpoint::new(self.system(), method, step);
         self.reload()?;
         Ok(checkpoint)
     }

@@ -134,7 +134,7 @@ impl Run {
     fn save(&mut self) -> Result<()> {
         self.record.thermo(self.simulation.thermo()?);
         let mut checkpoint = self.simulation.checkpoint()?;
-        checkpoint.config = self.config.to_toml();
+        checkpoint.config = self.config.to_toml()?;
         checkpoint.report = self.record.report_with(self.simulation.report());
         for observer in &mut self.observers {
             checkpoint.observers.insert(observer.name().into(), observer.save()?);
