@@ -95,6 +95,32 @@ pub fn all() -> Vec<Case> {
     cases
 }
 
+/// A system with nothing fixed but its seed.
+pub fn random(seed: u64) -> System {
+    let mut rng = rng(seed);
+    let scale = 10f32.powi(rng.random_range(-2..4));
+    let lo: [f32; 3] = std::array::from_fn(|_| scale * rng.random_range(-5.0..5.0));
+    let hi = std::array::from_fn(|a| lo[a] + scale * rng.random_range(1.0..4.0));
+    let boundary = std::array::from_fn(|_| [Periodic, Wall, Open][rng.random_range(0..3)]);
+    let sim_box = SimBox::new(lo, hi, boundary).expect("a valid box");
+    let (n, lengths) = (rng.random_range(2..150), sim_box.lengths());
+    let mut points = uniform(n, &sim_box, seed + 1000);
+    if rng.random::<bool>() {
+        let steps = rng.random_range(2..10) as f32;
+        for point in &mut points {
+            *point =
+                std::array::from_fn(|a| lo[a] + ((point[a] - lo[a]) / lengths[a] * steps).floor() / steps * lengths[a]);
+        }
+    }
+    let largest = 0.5 * lengths.into_iter().fold(f32::MAX, f32::min);
+    let radii = match rng.random_range(0..3) {
+        0 => Radii::Uniform(largest),
+        1 => Radii::Uniform(largest * rng.random_range(0.05..1.0)),
+        _ => Radii::PerParticle((0..n).map(|_| largest * rng.random_range(0.02f32..1.0).powi(3)).collect()),
+    };
+    soft(sim_box, points, radii)
+}
+
 /// A few thousand particles.
 pub fn thousands() -> Vec<Case> {
     let fluid = cube(12.0, [Periodic; 3]);
@@ -110,7 +136,7 @@ pub fn thousands() -> Vec<Case> {
 /// A hundred thousand particles at the density of a liquid.
 pub fn hundred_thousand() -> System {
     let sim_box = cube(50.0, [Periodic; 3]);
-    soft(sim_box, uniform(100_000, &sim_box, 11), Radii::Uniform(1.8))
+    soft(sim_box, uniform(100_000, &sim_box, 11), Radii::Uniform(1.4))
 }
 
 /// Every corner, edge and face centre, the last representable number below each upper face, and points just inside.

@@ -2,8 +2,11 @@
 
 /// Stamps the whole suite on an engine: a module of that name with a `#[test]` for each body.
 ///
-/// ```ignore
-/// nearfield_conformance::engine_tests!(cpu, nearfield_cpu::CpuEngine::new());
+/// ```
+/// use nearfield_conformance::OracleEngine;
+///
+/// nearfield_conformance::engine_tests!(oracle, OracleEngine::new());
+/// # fn main() {}
 /// ```
 #[macro_export]
 macro_rules! engine_tests {
@@ -45,6 +48,7 @@ macro_rules! small_bodies_on {
     ($engine:expr) => {
         $crate::bodies_on!($engine;
             neighbors: half_and_full_lists_equal_the_oracle_bit_for_bit,
+            neighbors: lists_of_random_systems_equal_the_oracle,
             neighbors: lists_of_thousands_of_particles_equal_the_oracle,
             neighbors: a_list_holds_only_what_was_asked_for,
             neighbors: counts_of_neighbors_equal_the_oracle,

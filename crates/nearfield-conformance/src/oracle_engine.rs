@@ -3,8 +3,8 @@
 mod integrate;
 
 use nearfield_core::{
-    Dynamics, Engine, Error, ListKind, ListRequest, NeighborList, Particles, PerParticle, Plan, Quantities, Report,
-    Result, System, Totals, Vec3s,
+    Dynamics, Engine, Error, ListKind, ListRequest, Method, NeighborList, Particles, PerParticle, Plan, Quantities,
+    Report, Result, System, Totals, Vec3s,
     engine::StepCost,
     maintenance::{Action, Motion, Policy},
     oracle::{self, Pair, Reference},
@@ -36,6 +36,16 @@ pub enum Fault {
     LeakyWalls,
     /// Refits whatever the policy says.
     NeverRebuilds,
+    /// Goes on with infinite forces and positions.
+    SilentOverlaps,
+    /// Does not limit displacements.
+    Unlimited,
+    /// Loses the image counts.
+    LosesImages,
+    /// Rounds the forces of one method differently.
+    MethodRounds,
+    /// Gives particles back in reverse.
+    MemoryOrder,
 }
 
 /// Brute force, float64 forces rounded to f32, and f32 velocity Verlet. Methods, images and orders change nothing but
@@ -141,12 +151,13 @@ impl OracleEngine {
     fn compute(&mut self, quantities: Quantities, capped: bool) -> Result<Totals> {
         let pairs = self.find_pairs()?;
         self.keep_books(pairs.len());
-        let wrong_sign = self.has(Fault::WrongForceSign);
-        let Loaded { system, force, forces_valid, per_particle, .. } = self.loaded()?;
+        let (wrong_sign, silent) = (self.has(Fault::WrongForceSign), self.has(Fault::SilentOverlaps));
+        let method_rounds = self.has(Fault::MethodRounds);
+        let Loaded { system, plan, force, forces_valid, per_particle, .. } = self.loaded()?;
         let at = |k: u32| system.particles.position.get(k as usize);
         let coincide = |p: &&Pair| at(p.i) == at(p.j) && p.image == [0; 3];
         let diverges = system.interaction.potential.diverges_at_zero();
-        if let Some(pair) = pairs.iter().find(coincide).filter(|_| diverges && !capped) {
+        if let Some(pair) = pairs.iter().find(coincide).filter(|_| diverges && !capped && !silent) {
             return Err(Error::Coincident(pair.i as usize, pair.j as usize));
         }
         let apart: Vec<Pair> = pairs.iter().copied().filter(|p| !(diverges && coincide(&p))).collect();
@@ -156,6 +167,9 @@ impl OracleEngine {
         }
         let round = |f: f64| if capped { f.clamp(-1e30, 1e30) as f32 } else { f as f32 };
         *force = found.force.iter().map(|f| f.map(round)).collect();
+        if method_rounds && plan.method == Method::RtForces {
+            force.x.iter_mut().for_each(|f| *f = f.next_up());
+        }
         *forces_valid = true;
         Ok(report_totals(system, force, found, pairs.len() as u64, quantities, per_particle))
     }
@@ -279,6 +293,10 @@ impl Engine for OracleEngine {
     fn snapshot(&mut self, particles: &mut Particles) {
         if let Some(loaded) = &self.loaded {
             particles.clone_from(&loaded.system.particles);
+        }
+        if self.has(Fault::MemoryOrder) {
+            particles.position.axes_mut().into_iter().for_each(|axis| axis.reverse());
+            particles.velocity.axes_mut().into_iter().for_each(|axis| axis.reverse());
         }
     }
 

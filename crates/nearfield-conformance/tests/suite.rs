@@ -22,7 +22,7 @@ fn a_lost_pair_is_noticed_in_lists_counts_and_forces() {
 
 #[test]
 fn a_shift_before_the_subtraction_is_noticed() {
-    caught(Fault::ShiftFirst, bodies::neighbors::half_and_full_lists_equal_the_oracle_bit_for_bit);
+    caught(Fault::ShiftFirst, bodies::neighbors::lists_of_random_systems_equal_the_oracle);
 }
 
 #[test]
@@ -78,4 +78,31 @@ fn leaky_walls_are_noticed() {
 #[test]
 fn refits_against_the_policy_are_noticed() {
     caught(Fault::NeverRebuilds, bodies::reports::every_never_refits_and_fixed_builds_at_each_period);
+}
+
+#[test]
+fn overlaps_passed_over_in_silence_are_noticed() {
+    let body = bodies::forces::coincident_particles_are_an_error_that_names_both_where_the_potential_diverges;
+    caught(Fault::SilentOverlaps, body);
+    caught(Fault::SilentOverlaps, bodies::limits::a_run_that_blows_up_is_an_error);
+}
+
+#[test]
+fn an_ignored_displacement_limit_is_noticed() {
+    let body = bodies::limits::no_particle_moves_further_than_the_limit_and_overlapping_starts_survive;
+    caught(Fault::Unlimited, body);
+}
+
+#[test]
+fn lost_images_and_memory_order_are_noticed() {
+    let body = bodies::motion::free_flight_keeps_input_order_and_continuous_unwrapped_positions;
+    caught(Fault::LosesImages, body);
+    caught(Fault::MemoryOrder, body);
+}
+
+#[test]
+fn a_method_that_rounds_differently_is_noticed() {
+    let body = bodies::forces::deterministic_forces_are_bitwise_equal_between_all_plans_and_repeats;
+    caught(Fault::MethodRounds, body);
+    caught(Fault::MethodRounds, bodies::motion::maintenance_and_skin_do_not_change_a_deterministic_trajectory);
 }

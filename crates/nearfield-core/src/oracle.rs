@@ -17,17 +17,29 @@ pub struct Pair {
 }
 
 /// Every pair within range by testing all pairs in all images, sorted.
+///
+/// An image is passed over once one component of its displacement reaches the range: rounding is monotonic, so the
+/// predicate would refuse it. Without that, periodic boxes take 27 times as long as open ones.
 pub fn pairs(sim_box: &SimBox, particles: &Particles, radii: &Radii) -> Vec<Pair> {
-    let images = sim_box.images();
+    let lengths = sim_box.lengths();
+    let images = |axis: usize| if sim_box.is_periodic(axis) { [-1i8, 0, 1].as_slice() } else { &[0] };
     let mut found = Vec::new();
     for i in 0..particles.len() {
         let xi = particles.position.get(i);
         for j in i + 1..particles.len() {
-            let xj = particles.position.get(j);
-            for &image in &images {
-                let dr = predicate::displacement(xi, xj, sim_box.shift(image));
-                if predicate::is_neighbor(predicate::squared_length(dr), radii.range(i, j)) {
-                    found.push(Pair { i: i as u32, j: j as u32, image });
+            let (xj, range) = (particles.position.get(j), radii.range(i, j));
+            let near = |axis: usize| {
+                let d = xj[axis] - xi[axis];
+                images(axis).iter().copied().filter(move |&k| (d + f32::from(k) * lengths[axis]).abs() < range)
+            };
+            for x in near(0) {
+                for y in near(1) {
+                    for image in near(2).map(|z| [x, y, z]) {
+                        let dr = predicate::displacement(xi, xj, sim_box.shift(image));
+                        if predicate::is_neighbor(predicate::squared_length(dr), range) {
+                            found.push(Pair { i: i as u32, j: j as u32, image });
+                        }
+                    }
                 }
             }
         }

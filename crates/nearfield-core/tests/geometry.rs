@@ -1,7 +1,7 @@
 //! Properties of the box and the predicate for random boxes, positions and shifts. proptest prints a failing case and
 //! its seed.
 
-use nearfield_core::{Boundary, SimBox, predicate};
+use nearfield_core::{Boundary, Particles, Radii, SimBox, oracle, predicate};
 use proptest::prelude::*;
 
 /// Finite coordinates of many magnitudes, zero and negative ones included.
@@ -116,6 +116,30 @@ proptest! {
                 }
             }
         }
+    }
+
+    #[test]
+    fn the_oracle_finds_what_the_predicate_accepts_in_all_images(
+        sim_box in periodic_box(), points in prop::collection::vec(fractions(), 0..12), scale in 0.01f32..0.5
+    ) {
+        let particles = Particles::at(points.iter().map(|&fraction| inside(&sim_box, fraction)));
+        let range = scale * sim_box.lengths().into_iter().fold(f32::MAX, f32::min);
+        let found = oracle::pairs(&sim_box, &particles, &Radii::Uniform(range));
+        prop_assert!(found.is_sorted());
+        let mut expected = Vec::new();
+        for i in 0..particles.len() {
+            for j in i + 1..particles.len() {
+                for image in sim_box.images() {
+                    let at = |k: usize| particles.position.get(k);
+                    let dr = predicate::displacement(at(i), at(j), sim_box.shift(image));
+                    if predicate::is_neighbor(predicate::squared_length(dr), range) {
+                        expected.push(oracle::Pair { i: i as u32, j: j as u32, image });
+                    }
+                }
+            }
+        }
+        expected.sort_unstable();
+        prop_assert_eq!(found, expected);
     }
 
     #[test]

@@ -16,6 +16,12 @@ pub fn half_and_full_lists_equal_the_oracle_bit_for_bit(factory: Factory) {
     compare_lists(factory, cases::all(), &plans::every());
 }
 
+/// Random boxes, boundaries, radii and positions, some of them on a grid so that ties are common.
+pub fn lists_of_random_systems_equal_the_oracle(factory: Factory) {
+    let cases = (0..80).map(|seed| Case { name: format!("random seed {seed}"), system: cases::random(seed) });
+    compare_lists(factory, cases.collect(), &plans::each_structure());
+}
+
 /// The same on larger inputs, by one memory order.
 pub fn lists_of_thousands_of_particles_equal_the_oracle(factory: Factory) {
     compare_lists(factory, cases::thousands(), &plans::each_structure());

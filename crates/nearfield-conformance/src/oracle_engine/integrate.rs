@@ -31,7 +31,7 @@ impl OracleEngine {
             for (v, f) in v.iter_mut().zip(f) {
                 *v += first_kick * f / m;
             }
-            system.particles.velocity.set(i, limited(v, dynamics));
+            system.particles.velocity.set(i, limited(v, dynamics, fault));
             if let Ensemble::Langevin { temperature, friction } = dynamics.ensemble {
                 drift(system, i, 0.5 * dt, fault);
                 let damping = (-friction * f64::from(dt)).exp();
@@ -42,14 +42,16 @@ impl OracleEngine {
                 for (v, random) in v.iter_mut().zip(random) {
                     *v = (damping * f64::from(*v) + noise * random) as f32;
                 }
-                system.particles.velocity.set(i, limited(v, dynamics));
+                system.particles.velocity.set(i, limited(v, dynamics, fault));
                 drift(system, i, 0.5 * dt, fault);
             } else {
                 drift(system, i, dt, fault);
             }
         }
         loaded.pairs = None;
-        check_finite(&loaded.system, step)?;
+        if fault != Some(Fault::SilentOverlaps) {
+            check_finite(&loaded.system, step)?;
+        }
         let mut totals = self.compute(quantities, capped)?;
         let loaded = self.loaded()?;
         for i in 0..n {
@@ -78,10 +80,14 @@ fn check_finite(system: &System, step: u64) -> Result<()> {
     Ok(())
 }
 
-fn limited(v: [f32; 3], dynamics: &Dynamics) -> [f32; 3] {
+fn limited(v: [f32; 3], dynamics: &Dynamics, fault: Option<Fault>) -> [f32; 3] {
     let speed = v.iter().map(|&v| f64::from(v) * f64::from(v)).sum::<f64>().sqrt();
     let limit = f64::from(dynamics.max_displacement / dynamics.dt);
-    if limit > 0.0 && speed > limit { v.map(|v| (f64::from(v) * limit / speed) as f32) } else { v }
+    if limit > 0.0 && speed > limit && fault != Some(Fault::Unlimited) {
+        v.map(|v| (f64::from(v) * limit / speed) as f32)
+    } else {
+        v
+    }
 }
 
 fn drift(system: &mut System, i: usize, dt: f32, fault: Option<Fault>) {
@@ -91,7 +97,9 @@ fn drift(system: &mut System, i: usize, dt: f32, fault: Option<Fault>) {
     }
     let (mut x, crossings) = system.sim_box.wrap(x);
     for axis in 0..3 {
-        system.particles.image[i][axis] += crossings[axis];
+        if fault != Some(Fault::LosesImages) {
+            system.particles.image[i][axis] += crossings[axis];
+        }
         if system.sim_box.boundary()[axis] == Boundary::Wall && fault != Some(Fault::LeakyWalls) {
             let (lo, hi) = (system.sim_box.lo()[axis], system.sim_box.hi()[axis]);
             while x[axis].is_finite() && !(lo..=hi).contains(&x[axis]) {
