@@ -10,6 +10,7 @@ pub(super) const BITS: u32 = 20;
 
 /// The places of the cells `(x, y, z)`, numbers of `3 BITS` bits.
 #[inline(always)]
+#[expect(clippy::needless_range_loop, reason = "kernels index, see node.rs")]
 pub(super) fn places(mut cells: [[u32; LANES]; 3]) -> [u64; LANES] {
     // Undo the rotations and reflections of the curve from the coarsest level on.
     for bit in (1..BITS).rev() {

@@ -125,7 +125,7 @@ impl Bvh {
         }
         self.fit(input);
         match self.views.ghosts() {
-            Some(ghosts) if !ghosts.suffice(&self.slots, input) => Refit::NeedsBuild,
+            Some(ghosts) if !ghosts.suffice(&self.tree, &self.slots, input) => Refit::NeedsBuild,
             _ => Refit::Done,
         }
     }

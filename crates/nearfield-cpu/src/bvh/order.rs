@@ -2,7 +2,8 @@
 //!
 //! Along a Morton curve, which jumps, a group of 16 tests 1.9 times as many candidates (10^6 equal boxes, 8 neighbours:
 //! 1080 against 564). A code has 20 bits an axis: the usual 10 put a whole cluster into one cell. Four bits of size
-//! class above them keep large boxes out of the leaves of small ones.
+//! class above them keep large boxes out of the leaves of small ones. Candidates tested for 10^5 radii LN(1, 2) within
+//! [1, 330] by ratio of the classes: 4092 (sqrt 2), 2942 (2), **2506 (4)**, 2539 (8), 4736 (one class).
 
 use super::hilbert;
 use super::sort::{Key, KeySort};
@@ -12,6 +13,7 @@ use rayon::prelude::*;
 
 const CLASS_SHIFT: u32 = 3 * hilbert::BITS;
 const LAST_CLASS: u32 = (1 << (u64::BITS - CLASS_SHIFT)) - 1;
+const OCTAVES_PER_CLASS: u32 = 2;
 const CHUNK: usize = 1 << 12;
 
 /// Sorts particles along the curve, keeping its buffers.
@@ -74,6 +76,7 @@ impl WithSimd for Encode<'_> {
     type Output = ();
 
     #[inline(always)]
+    #[expect(clippy::needless_range_loop, reason = "kernels index, see node.rs")]
     fn with_simd<S: Simd>(self, _: S) {
         let Self { curve, input, mut first, keys } = self;
         for keys in keys.chunks_mut(LANES) {
@@ -88,7 +91,8 @@ impl WithSimd for Encode<'_> {
             let places = hilbert::places(cells);
             for (lane, key) in keys.iter_mut().enumerate() {
                 let particle = first + lane;
-                let class = octaves(curve.least_radius, input.radius(particle)).min(LAST_CLASS);
+                let class = octaves(curve.least_radius, input.radius(particle)) / OCTAVES_PER_CLASS;
+                let class = class.min(LAST_CLASS);
                 *key = Key { code: u64::from(class) << CLASS_SHIFT | places[lane], particle: particle as u32 };
             }
             first += LANES;

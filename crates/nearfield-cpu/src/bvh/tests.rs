@@ -126,7 +126,9 @@ fn placements(n: usize, length: f32, rng: &mut Rng) -> Vec<(&'static str, Vec<[f
         (0..n).map(|_| [0; 3].map(|_| around(rng))).collect()
     };
     let mut outlier = ball(1e-3 * length, rng);
-    outlier.first_mut().map(|p| *p = [0.0; 3]);
+    if let Some(first) = outlier.first_mut() {
+        *first = [0.0; 3];
+    }
     let shell = uniform.iter().map(|p| {
         let from_center = p.map(|c| c - length / 2.0);
         let norm = squared_length(from_center).sqrt();
