@@ -81,6 +81,7 @@ impl WithSimd for CountGroup<'_> {
     type Output = (u64, u64);
 
     #[inline(always)]
+    #[expect(clippy::needless_range_loop, reason = "kernels index: closures are not sure to be inlined")]
     fn with_simd<S: Simd>(self, _: S) -> (u64, u64) {
         let Self { scene, bvh, runs, slots: queries } = self;
         let slots = bvh.slots();
