@@ -1,6 +1,10 @@
 //! The equations of motion and their thermostats.
 
-use crate::{Error, Result};
+use crate::{
+    Error, Result,
+    philox::{PhiloxRng, Stream},
+};
+use rand_distr::{ChiSquared, Distribution, StandardNormal};
 use serde::{Deserialize, Serialize};
 
 /// Which ensemble a run samples.
@@ -69,4 +73,22 @@ impl Dynamics {
             }
         }
     }
+}
+
+/// The factor of velocity rescaling after a step (Bussi, Donadio and Parrinello, J. Chem. Phys. 126, 014101 (2007),
+/// eq. A7): it takes the kinetic energy towards `temperature` over relaxation times, with the fluctuations of the
+/// canonical ensemble. `ratio` = dt over the relaxation time. Momentum is conserved, so n particles have 3n - 3
+/// degrees of freedom. A system at rest stays so.
+pub fn rescale_factor(kinetic: f64, n: usize, temperature: f64, ratio: f64, seed: u64, step: u64) -> f64 {
+    let n_dof = if n > 1 { 3.0 * n as f64 - 3.0 } else { 3.0 };
+    if kinetic <= 0.0 {
+        return 1.0;
+    }
+    let mut random = PhiloxRng::new(seed, Stream::Rescale, step);
+    let r1: f64 = StandardNormal.sample(&mut random);
+    let rest = ChiSquared::new(n_dof - 1.0).expect("at least two other degrees of freedom").sample(&mut random);
+    let target = 0.5 * temperature / kinetic;
+    let c = (-ratio).exp();
+    let square = c + (1.0 - c) * target * (r1 * r1 + rest) + 2.0 * r1 * (c * (1.0 - c) * target).sqrt();
+    square.max(0.0).sqrt()
 }

@@ -3,7 +3,7 @@
 //! State stays on the device between calls. Inner loops are monomorphic behind this boundary.
 
 use crate::{Dynamics, ListRequest, NeighborList, Particles, Plan, Result, System, Vec3s};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What an evaluation computes beside forces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -48,7 +48,7 @@ pub struct PerParticle {
 }
 
 /// Structure and query cost of one step, for the maintenance time series (paper A, figure 8).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StepCost {
     /// Whether the structure was built anew rather than refitted.
     pub built: bool,
@@ -59,7 +59,7 @@ pub struct StepCost {
 }
 
 /// What an engine did since the system was loaded.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Report {
     /// Force evaluations.
     pub evaluations: u64,
@@ -88,6 +88,29 @@ pub struct Report {
     pub bytes: u64,
     /// Cost of each evaluation, when recording was asked for.
     pub history: Vec<StepCost>,
+}
+
+impl Report {
+    /// The sum of two reports, `later` being of the same simulation after the engine was loaded again.
+    #[must_use]
+    pub fn followed_by(mut self, mut later: Self) -> Self {
+        self.history.append(&mut later.history);
+        Self {
+            evaluations: self.evaluations + later.evaluations,
+            builds: self.builds + later.builds,
+            refits: self.refits + later.refits,
+            forced_builds: self.forced_builds + later.forced_builds,
+            list_builds: self.list_builds + later.list_builds,
+            dangerous_builds: self.dangerous_builds + later.dangerous_builds,
+            batched_evaluations: self.batched_evaluations + later.batched_evaluations,
+            build_seconds: self.build_seconds + later.build_seconds,
+            refit_seconds: self.refit_seconds + later.refit_seconds,
+            query_seconds: self.query_seconds + later.query_seconds,
+            integrate_seconds: self.integrate_seconds + later.integrate_seconds,
+            bytes: later.bytes,
+            history: self.history,
+        }
+    }
 }
 
 /// A device that holds a system and computes on it.

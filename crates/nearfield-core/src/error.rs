@@ -132,7 +132,9 @@ pub enum Error {
     )]
     Coincident(usize, usize),
     /// A quantity became NaN or infinite in a run.
-    #[error("step {step}: {what} of particle {particle} is {value}; a smaller dt or dynamics.max_displacement may help")]
+    #[error(
+        "step {step}: {what} of particle {particle} is {value}; a smaller dt or dynamics.max_displacement may help"
+    )]
     NonFinite {
         /// Step at whose end it was found.
         step: u64,

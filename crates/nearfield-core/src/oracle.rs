@@ -1,6 +1,8 @@
 //! Brute force in float64: the reference every method is tested against. Slow and plain on purpose.
 
-use crate::{ListKind, NeighborList, Particles, Radii, SimBox, System, interaction::Truncated, potentials::PairPotential};
+use crate::{
+    ListKind, NeighborList, Particles, Radii, SimBox, System, interaction::Truncated, potentials::PairPotential,
+};
 use crate::{interaction::PairLaw, predicate, with_potential};
 
 /// A pair within range: `i < j`, and the image of j it was found at.
@@ -82,8 +84,12 @@ pub struct Reference {
 /// Forces and energies in float64, of the pairs that the f32 predicate accepts. Displacements are recomputed in f64
 /// from the f32 positions and shifts.
 pub fn evaluate(system: &System) -> Reference {
-    let pairs = pairs(&system.sim_box, &system.particles, &system.radii);
-    with_potential!(&system.interaction.potential, p => sum(system, &pairs, p))
+    evaluate_pairs(system, &pairs(&system.sim_box, &system.particles, &system.radii))
+}
+
+/// As [`evaluate`], of the given pairs.
+pub fn evaluate_pairs(system: &System, pairs: &[Pair]) -> Reference {
+    with_potential!(&system.interaction.potential, p => sum(system, pairs, p))
 }
 
 fn sum<P: PairPotential>(system: &System, pairs: &[Pair], potential: &P) -> Reference {
@@ -106,9 +112,9 @@ fn sum<P: PairPotential>(system: &System, pairs: &[Pair], potential: &P) -> Refe
         let kind = &system.particles.kind;
         let c = system.interaction.pair_f64(kind[i], kind[j], system.radii.range(i, j), system.radii.is_uniform());
         let (f, u) = (law.f_over_r(r2, &c), law.energy(r2, &c));
-        for axis in 0..3 {
-            out.force[i][axis] -= f * dr[axis];
-            out.force[j][axis] += f * dr[axis];
+        for (axis, d) in dr.into_iter().enumerate() {
+            out.force[i][axis] -= f * d;
+            out.force[j][axis] += f * d;
         }
         let size = (f * r2.sqrt()).abs();
         out.magnitude[i] += size;

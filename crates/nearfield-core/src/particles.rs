@@ -1,12 +1,13 @@
 //! Particles as a structure of arrays.
 
-use crate::Vec3s;
+use crate::{Boundary, Error, Result, SimBox, Vec3s};
+use serde::{Deserialize, Serialize};
 
 /// The state of N particles, each array `[N]`.
 ///
 /// Arrays are in input order, and an index is a particle's stable id: engines reorder copies of their own and give
 /// everything back in this order.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Particles {
     /// Positions, [length], inside the box on periodic axes.
     pub position: Vec3s,
@@ -34,5 +35,33 @@ impl Particles {
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.position.is_empty()
+    }
+
+    /// Checks positions: not too many, all finite, within the walls of the box.
+    ///
+    /// # Errors
+    /// The first problem found, naming the particle.
+    pub fn validate_positions(position: &Vec3s, sim_box: &SimBox) -> Result<()> {
+        let expected = position.len();
+        if expected > i32::MAX as usize {
+            return Err(Error::TooManyParticles(expected));
+        }
+        for (what, found) in [("y coordinates", position.y.len()), ("z coordinates", position.z.len())] {
+            if found != expected {
+                return Err(Error::LengthMismatch { what, found, expected });
+            }
+        }
+        let (lo, hi) = (sim_box.lo(), sim_box.hi());
+        for (particle, at) in position.iter().enumerate() {
+            for (axis, value) in at.into_iter().enumerate() {
+                if !value.is_finite() {
+                    return Err(Error::NonFiniteCoordinate { particle, axis, value });
+                }
+                if sim_box.boundary()[axis] == Boundary::Wall && !(lo[axis]..=hi[axis]).contains(&value) {
+                    return Err(Error::OutsideWalls { particle, axis, value, lo: lo[axis], hi: hi[axis] });
+                }
+            }
+        }
+        Ok(())
     }
 }

@@ -36,6 +36,44 @@ pub fn uniforms(seed: u64, stream: Stream, step: u64, index: u32) -> [f64; 4] {
     philox4x32(counter, [seed as u32, (seed >> 32) as u32]).map(|bits| (f64::from(bits) + 0.5) / 4_294_967_296.0)
 }
 
+/// The sequence of a step as a generator, for distributions that take a varying number of draws.
+#[derive(Clone, Debug)]
+pub struct PhiloxRng {
+    seed: u64,
+    stream: Stream,
+    step: u64,
+    next: u32,
+}
+
+impl PhiloxRng {
+    /// Draws from index 0 of `step` on.
+    pub fn new(seed: u64, stream: Stream, step: u64) -> Self {
+        Self { seed, stream, step, next: 0 }
+    }
+}
+
+impl rand::TryRng for PhiloxRng {
+    type Error = std::convert::Infallible;
+
+    fn try_next_u32(&mut self) -> Result<u32, Self::Error> {
+        self.try_next_u64().map(|bits| bits as u32)
+    }
+
+    fn try_next_u64(&mut self) -> Result<u64, Self::Error> {
+        let counter = [self.next, self.step as u32, (self.step >> 32) as u32, self.stream as u32];
+        self.next = self.next.wrapping_add(1);
+        let [a, b, ..] = philox4x32(counter, [self.seed as u32, (self.seed >> 32) as u32]);
+        Ok(u64::from(a) | u64::from(b) << 32)
+    }
+
+    fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Self::Error> {
+        for chunk in bytes.chunks_mut(8) {
+            chunk.copy_from_slice(&self.try_next_u64()?.to_le_bytes()[..chunk.len()]);
+        }
+        Ok(())
+    }
+}
+
 /// Four standard normal numbers, by the Box-Muller transform.
 #[inline]
 pub fn normals(seed: u64, stream: Stream, step: u64, index: u32) -> [f64; 4] {

@@ -1,9 +1,10 @@
 //! The interaction range: one cutoff for all, or a search radius per particle.
 
 use crate::{Error, Result, SimBox};
+use serde::{Deserialize, Serialize};
 
 /// Search radii, [length]. The range of a pair is `max(r_i, r_j)`.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Radii {
     /// One cutoff for every pair.
     Uniform(f32),

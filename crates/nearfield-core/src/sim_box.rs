@@ -118,7 +118,7 @@ impl SimBox {
     }
 
     /// The position inside `[lo, hi)` on periodic axes, and the box crossings removed: the unwrapped coordinate is
-    /// `wrapped + crossings * length`. Other axes are left alone.
+    /// `wrapped + crossings * length`. Other axes are left alone. What is not finite stays so or becomes NaN.
     #[inline]
     pub fn wrap(&self, position: [f32; 3]) -> ([f32; 3], [i32; 3]) {
         let mut wrapped = position;
@@ -137,9 +137,10 @@ impl SimBox {
         let wrapped = (f64::from(value) - count * (hi - lo)) as f32;
         // Rounding to f32 may land on `hi` itself, which is the image of `lo`.
         if wrapped >= self.hi[axis] {
-            (self.lo[axis], count as i32 + 1)
+            (self.lo[axis], (count as i32).saturating_add(1))
         } else {
-            (wrapped.max(self.lo[axis]), count as i32)
+            // Not `max`: that would turn a NaN into `lo` and hide a run that has blown up.
+            (if wrapped < self.lo[axis] { self.lo[axis] } else { wrapped }, count as i32)
         }
     }
 

@@ -1,6 +1,6 @@
 //! What is simulated: box, particles, ranges and interaction.
 
-use crate::{Boundary, Error, Interaction, Particles, Radii, Result, SimBox};
+use crate::{Error, Interaction, Particles, Radii, Result, SimBox};
 
 /// A complete physical system.
 #[derive(Clone, Debug)]
@@ -21,8 +21,8 @@ impl System {
         for i in 0..self.particles.len() {
             let (wrapped, crossings) = self.sim_box.wrap(self.particles.position.get(i));
             self.particles.position.set(i, wrapped);
-            for axis in 0..3 {
-                self.particles.image[i][axis] += crossings[axis];
+            for (image, crossed) in self.particles.image[i].iter_mut().zip(crossings) {
+                *image += crossed;
             }
         }
     }
@@ -34,16 +34,12 @@ impl System {
     /// interaction parameters.
     pub fn validate(&self) -> Result<()> {
         let particles = &self.particles;
+        Particles::validate_positions(&particles.position, &self.sim_box)?;
         let expected = particles.len();
-        if expected > i32::MAX as usize {
-            return Err(Error::TooManyParticles(expected));
-        }
         let lengths = [
             ("velocities", particles.velocity.len()),
             ("types", particles.kind.len()),
             ("images", particles.image.len()),
-            ("y coordinates", particles.position.y.len()),
-            ("z coordinates", particles.position.z.len()),
         ];
         for (what, found) in lengths {
             if found != expected {
@@ -58,20 +54,9 @@ impl System {
     }
 
     fn validate_particle(&self, particle: usize) -> Result<()> {
-        let position = self.particles.position.get(particle);
         let velocity = self.particles.velocity.get(particle);
-        let (lo, hi) = (self.sim_box.lo(), self.sim_box.hi());
-        for axis in 0..3 {
-            let value = position[axis];
-            if !value.is_finite() {
-                return Err(Error::NonFiniteCoordinate { particle, axis, value });
-            }
-            if !velocity[axis].is_finite() {
-                return Err(Error::NonFiniteVelocity { particle, axis, value: velocity[axis] });
-            }
-            if self.sim_box.boundary()[axis] == Boundary::Wall && !(lo[axis]..=hi[axis]).contains(&value) {
-                return Err(Error::OutsideWalls { particle, axis, value, lo: lo[axis], hi: hi[axis] });
-            }
+        if let Some(axis) = velocity.iter().position(|v| !v.is_finite()) {
+            return Err(Error::NonFiniteVelocity { particle, axis, value: velocity[axis] });
         }
         let kind = self.particles.kind[particle];
         let n_types = self.interaction.types.len();

@@ -1,7 +1,9 @@
 //! Three parallel arrays: vectors stored as a structure of arrays.
 
+use serde::{Deserialize, Serialize};
+
 /// N three-dimensional vectors as three `[N]` arrays, the layout that SIMD kernels read.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Vec3s {
     /// x components, `[N]`.
     pub x: Vec<f32>,

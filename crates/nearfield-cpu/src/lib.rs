@@ -4,10 +4,38 @@
 //! applies the predicate to them and does something with the pairs. Structures and consumers know nothing of each
 //! other, so each combination is exact once each part is.
 
+mod brute;
 mod bvh;
+mod engine;
+mod exact_sum;
+mod grid;
+mod kernel;
+mod lanes;
+mod list;
+mod parallel;
+mod physics;
+mod search;
 mod slots;
 mod structure;
+#[cfg(test)]
+mod testing;
 
+pub use brute::Brute;
 pub use bvh::{Bvh, Refit};
+pub use engine::CpuEngine;
+pub use grid::Grid;
+pub use list::{ListBuilder, Row, Rows, neighbor_list};
+pub use search::{Counts, Pair, bipartite_list, count_neighbors, for_each_pair};
 pub use slots::{Input, InputRadii, LANES, Slots};
 pub use structure::{GroupBox, Run, Structure};
+
+/// Name of the instruction set that kernels run with here.
+pub fn instruction_set() -> &'static str {
+    match pulp::Arch::new() {
+        #[cfg(target_arch = "x86_64")]
+        pulp::Arch::V4(_) => "AVX-512",
+        #[cfg(target_arch = "x86_64")]
+        pulp::Arch::V3(_) => "AVX2",
+        _ => "portable",
+    }
+}

@@ -56,8 +56,8 @@ impl Input<'_> {
 
 /// N slots as a structure of arrays in the structure's order, each array `[N + LANES]`.
 ///
-/// **Invariant:** the last `LANES` slots are padding: coordinates NaN, so that the predicate refuses them, `particle`
-/// `u32::MAX`. Structures may hold more slots than particles (ghosts) and pad elsewhere by the same convention.
+/// **Invariant:** the last `LANES` slots are padding: coordinates [`Slots::FAR`], `particle` `u32::MAX`. Structures may
+/// hold more slots than particles (ghosts) and pad elsewhere by the same convention.
 #[derive(Clone, Debug, Default)]
 pub struct Slots {
     /// x coordinates.
@@ -75,6 +75,33 @@ pub struct Slots {
 }
 
 impl Slots {
+    /// Coordinate of padding: finite, so that a masked force of zero times the displacement stays zero, and so far
+    /// that the squared distance is infinite and the predicate refuses it whatever the range.
+    pub const FAR: f32 = f32::MAX / 8.0;
+
+    /// Copies particles in the given order and pads.
+    pub fn fill(&mut self, input: &Input, order: impl Iterator<Item = u32> + Clone) {
+        for (axis, out) in [&mut self.x, &mut self.y, &mut self.z].into_iter().enumerate() {
+            out.clear();
+            out.extend(order.clone().map(|i| input.position[axis][i as usize]));
+            out.resize(out.len() + LANES, Self::FAR);
+        }
+        let n = self.x.len();
+        self.particle.clear();
+        self.particle.extend(order.clone());
+        self.particle.resize(n, u32::MAX);
+        self.radius.clear();
+        if let InputRadii::PerParticle(radii) = input.radii {
+            self.radius.extend(order.clone().map(|i| radii[i as usize]));
+            self.radius.resize(n, 0.0);
+        }
+        self.kind.clear();
+        if !input.kind.is_empty() {
+            self.kind.extend(order.map(|i| input.kind[i as usize]));
+            self.kind.resize(n, 0);
+        }
+    }
+
     /// Number of slots without the final padding.
     pub fn len(&self) -> usize {
         self.x.len().saturating_sub(LANES)

@@ -26,6 +26,32 @@ pub struct GroupBox {
     pub radius: f32,
 }
 
+impl GroupBox {
+    /// The box around the particles in `group`, padding left out; `None` when it holds nothing else. `uniform` is the
+    /// radius where slots carry none.
+    #[inline]
+    pub fn around(slots: &Slots, group: Range<usize>, uniform: f32) -> Option<Self> {
+        let mut bounds = Self { lo: [f32::INFINITY; 3], hi: [f32::NEG_INFINITY; 3], radius: 0.0 };
+        for slot in group.clone() {
+            // Comparisons with the NaN of padding leave the bounds alone.
+            for (axis, x) in slots.at(slot).into_iter().enumerate() {
+                bounds.lo[axis] = bounds.lo[axis].min(x);
+                bounds.hi[axis] = bounds.hi[axis].max(x);
+            }
+        }
+        if bounds.lo[0] > bounds.hi[0] {
+            return None;
+        }
+        bounds.radius = match slots.radius.get(group.clone()) {
+            Some(radii) => radii.iter().zip(&slots.particle[group]).fold(0.0, |largest, (&radius, &particle)| {
+                if particle == u32::MAX { largest } else { largest.max(radius) }
+            }),
+            None => uniform,
+        };
+        Some(bounds)
+    }
+}
+
 /// A search structure over slots.
 ///
 /// Work is done by groups of nearby queries: the runs of a group are found once, then each of its queries is tested
@@ -44,4 +70,10 @@ pub trait Structure: Sync {
     /// it is within range at. A slot-image pair appears in at most one run; candidates out of range are allowed.
     /// `out` is cleared by the caller.
     fn runs(&self, group: &GroupBox, out: &mut Vec<Run>);
+
+    /// Whether runs hold every j with distance < max(r_i, r_j). Otherwise they hold only those with distance < r_j:
+    /// every pair is proposed to its particle of smaller radius, but not always to both.
+    fn complete(&self) -> bool {
+        true
+    }
 }

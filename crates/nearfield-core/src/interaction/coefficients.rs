@@ -94,7 +94,8 @@ pub struct RadiusScaled<'a, P> {
 impl<P: PairPotential> Coefficients for RadiusScaled<'_, P> {
     #[inline(always)]
     fn get(&self, kind_i: u32, kind_j: u32, range: f32) -> PairCoefficients<f32> {
-        let epsilon = if self.n_types == 1 { self.epsilon[0] } else { self.epsilon[(kind_i * self.n_types + kind_j) as usize] };
+        let epsilon =
+            if self.n_types == 1 { self.epsilon[0] } else { self.epsilon[(kind_i * self.n_types + kind_j) as usize] };
         PairCoefficients::new(self.potential, self.truncation, epsilon, range * self.sigma_per_range, range)
     }
 }

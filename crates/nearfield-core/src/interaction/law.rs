@@ -19,7 +19,8 @@ impl<P: PairPotential, const FORCE_SHIFT: bool> PairLaw for Truncated<'_, P, FOR
     #[inline(always)]
     fn f_over_r<T: Real>(&self, r2: T, c: &PairCoefficients<T>) -> T {
         let f = self.0.f_over_r(r2, c.epsilon, c.sigma);
-        if FORCE_SHIFT { f - c.force_shift / r2.sqrt() } else { f }
+        // Coincident particles of a finite potential: any finite factor will do, it is multiplied by dr = 0.
+        if FORCE_SHIFT { f - c.force_shift / r2.max(T::of(f64::from(f32::MIN_POSITIVE))).sqrt() } else { f }
     }
 
     #[inline(always)]

@@ -4,7 +4,10 @@
 //! k = -1 + sqrt(1 + 2 (t_r - t_u) / Δq). Its eq. (5) integrates k²/2 where the sum over steps is k(k+1)/2; summed
 //! exactly the optimum is -1 + sqrt(2 (t_r - t_u) / Δq). The policy keeps the paper's formula.
 
-use super::{Action, Motion, Policy};
+use super::{
+    Action, Motion, Policy,
+    robust::{self, RecentMedian},
+};
 use crate::engine::StepCost;
 
 /// Optimal refits between rebuilds, paper A eq. (8). Zero when a rebuild is no dearer than a refit, `None` when
@@ -21,94 +24,93 @@ pub fn optimal_updates(rebuild: f64, refit: f64, growth: f64) -> Option<f64> {
 
 /// The optimum of the cost summed exactly over the steps instead of integrated.
 pub fn optimal_updates_exact(rebuild: f64, refit: f64, growth: f64) -> Option<f64> {
-    optimal_updates(rebuild, refit, growth).map(|k| {
-        if k > 0.0 { (-1.0 + (2.0 * (rebuild - refit) / growth).sqrt()).max(0.0) } else { 0.0 }
-    })
+    optimal_updates(rebuild, refit, growth)
+        .map(|k| if k > 0.0 { (-1.0 + (2.0 * (rebuild - refit) / growth).sqrt()).max(0.0) } else { 0.0 })
 }
 
-/// Weight of the newest build or refit time in its running mean.
-const SMOOTHING: f64 = 0.3;
 /// Refits after which the structure is rebuilt even though queries seem not to slow down: bounds the harm of a
 /// wrong estimate, and at this rate a rebuild costs nothing.
-const MAX_UPDATES: f64 = 2000.0;
-/// Refits in a cycle before its own slope is trusted alone; until then the last cycle's slope is mixed in.
-const WINDOW: f64 = 8.0;
+const MAX_UPDATES: usize = 2000;
+/// Samples before the slope of the very first cycle is believed.
+const WINDOW: usize = 8;
+/// Refits measured before "a rebuild is no dearer" is believed: under that guard none is measured any more.
+const MIN_REFITS: usize = 3;
+/// Share of the evidence kept from one cycle to the next, so that the estimate follows a changing system.
+const MEMORY: f64 = 0.75;
+/// The most a positive growth may rise or fall by from one cycle to the next: what a single wild cycle can do.
+const MAX_CHANGE: f64 = 2.0;
+/// Rebuilds in a row after which one step refits all the same: where every step rebuilds, neither refits nor the
+/// growth are measured, and a wrong measurement would rule for ever.
+const PROBE_AFTER: u32 = 64;
 
-/// The optimiser: running means of build and refit time, and the least-squares slope of the query time over the
-/// steps since the last rebuild.
-#[derive(Clone, Copy, Debug, Default)]
+/// The optimiser: recent medians of build and refit time, and a robust slope of the query time over the steps since
+/// the last rebuild.
+///
+/// Two estimates of the slope are weighted by their evidence, the cube of the number of steps each was fitted to (the
+/// inverse variance of a fitted slope): what earlier cycles left, and the running cycle. Early in a cycle the former
+/// rules, so that the noise of a few samples cannot end it; a cycle longer than those before trusts itself.
+#[derive(Clone, Debug, Default)]
 pub struct Gradient {
-    rebuild: Option<f64>,
-    refit: Option<f64>,
-    /// Slope of the previous cycle.
-    last_growth: Option<f64>,
-    cycle: Slope,
+    rebuild: RecentMedian,
+    refit: RecentMedian,
+    past: Option<Growth>,
+    /// Query times since the last rebuild, the rebuilt step's first.
+    queries: Vec<f64>,
+    rebuilds_in_a_row: u32,
 }
 
-/// Least squares of query time over step number within one cycle.
-#[derive(Clone, Copy, Debug, Default)]
-struct Slope {
-    n: f64,
-    x: f64,
-    y: f64,
-    xx: f64,
-    xy: f64,
-}
-
-impl Slope {
-    fn add(&mut self, y: f64) {
-        let x = self.n;
-        self.n += 1.0;
-        self.x += x;
-        self.y += y;
-        self.xx += x * x;
-        self.xy += x * y;
-    }
-
-    fn value(&self) -> Option<f64> {
-        let denominator = self.n * self.xx - self.x * self.x;
-        (self.n >= 3.0).then(|| (self.n * self.xy - self.x * self.y) / denominator)
-    }
+/// Growth of the query time per step, and how much it is worth.
+#[derive(Clone, Copy, Debug)]
+struct Growth {
+    slope: f64,
+    evidence: f64,
 }
 
 impl Gradient {
-    /// Growth of the query time per step: this cycle's slope, mixed with the last cycle's while samples are few.
-    fn growth(&self) -> Option<f64> {
-        match (self.cycle.value(), self.last_growth) {
-            (Some(now), Some(last)) => {
-                let trust = (self.cycle.n / WINDOW).min(1.0);
-                Some(trust * now + (1.0 - trust) * last)
+    /// Past and running cycle together.
+    fn growth(&self) -> Option<Growth> {
+        let n = self.queries.len();
+        let now = robust::slope(&self.queries).map(|slope| Growth { slope, evidence: (n as f64).powi(3) });
+        match (self.past, now) {
+            (Some(past), Some(now)) => {
+                let evidence = past.evidence + now.evidence;
+                let mean = (past.slope * past.evidence + now.slope * now.evidence) / evidence;
+                let slope = match past.slope {
+                    positive if positive > 0.0 => mean.clamp(positive / MAX_CHANGE, positive * MAX_CHANGE),
+                    _ => mean,
+                };
+                Some(Growth { slope, evidence })
             }
-            // A first cycle of few samples is mostly noise: wait for the window.
-            (Some(now), None) => (self.cycle.n >= WINDOW).then_some(now),
-            (None, last) => last,
+            (Some(past), None) => Some(past),
+            (None, now) => now.filter(|_| n >= WINDOW),
         }
     }
 }
 
 impl Policy for Gradient {
     fn decide(&mut self, _: Motion) -> Action {
-        let updates = self.cycle.n - 1.0;
-        let (Some(rebuild), Some(refit)) = (self.rebuild, self.refit) else { return Action::Refit };
-        let due = match self.growth() {
-            None => false,
-            Some(growth) => match optimal_updates(rebuild, refit, growth) {
-                Some(optimum) => updates >= optimum.round(),
-                None => false,
-            },
+        let updates = self.queries.len().saturating_sub(1);
+        let (Some(rebuild), Some(refit)) = (self.rebuild.value(), self.refit.value()) else { return Action::Refit };
+        let optimum = if rebuild <= refit {
+            (self.refit.count() >= MIN_REFITS).then_some(0.0)
+        } else {
+            self.growth().and_then(|growth| optimal_updates(rebuild, refit, growth.slope))
         };
+        let probe = self.rebuilds_in_a_row >= PROBE_AFTER;
+        let due = !probe && optimum.is_some_and(|optimum| updates as f64 >= optimum.round());
         if due || updates >= MAX_UPDATES { Action::Build } else { Action::Refit }
     }
 
     fn record(&mut self, cost: StepCost) {
-        let mean = |old: Option<f64>, new: f64| Some(old.map_or(new, |old| old + SMOOTHING * (new - old)));
         if cost.built {
-            self.rebuild = mean(self.rebuild, cost.structure);
-            self.last_growth = self.growth();
-            self.cycle = Slope::default();
+            self.rebuild.add(cost.structure);
+            self.past = self.growth().map(|g| Growth { evidence: g.evidence * MEMORY, ..g });
+            self.queries.clear();
+            self.rebuilds_in_a_row += 1;
         } else {
-            self.refit = mean(self.refit, cost.structure);
+            self.refit.add(cost.structure);
+            self.rebuilds_in_a_row = 0;
         }
-        self.cycle.add(cost.query);
+        self.queries.push(cost.query);
     }
 }

@@ -8,6 +8,7 @@ mod displacement;
 mod every;
 mod fixed;
 mod gradient;
+mod robust;
 
 pub use average::Average;
 pub use displacement::Displacement;

@@ -20,6 +20,8 @@ pub trait Real:
     fn sqrt(self) -> Self;
     /// Exponential.
     fn exp(self) -> Self;
+    /// The larger of two.
+    fn max(self, other: Self) -> Self;
 }
 
 macro_rules! real {
@@ -40,6 +42,10 @@ macro_rules! real {
             #[inline(always)]
             fn exp(self) -> Self {
                 self.exp()
+            }
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                self.max(other)
             }
         }
     };

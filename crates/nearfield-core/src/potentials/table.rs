@@ -82,7 +82,8 @@ impl Table {
     /// (U, F) at distance `x`, in units of ε and σ.
     #[inline]
     fn interpolate(&self, x: f64) -> [f64; 2] {
-        if x >= self.end {
+        // The end itself still counts: a cutoff there takes its shifts from the last row.
+        if x > self.end {
             return [0.0, 0.0];
         }
         if x < self.start {

@@ -19,7 +19,7 @@ use crate::{GroupBox, Input, InputRadii, LANES, Run, Slots, Structure};
 use images::{Scene, Views};
 use nearfield_core::{Images, SimBox, predicate::conservative_range};
 use node::Aabb;
-use order::CurveOrder;
+pub(crate) use order::CurveOrder;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -96,18 +96,15 @@ impl Bvh {
         let particle = &mut self.slots.particle;
         particle.clear();
         particle.resize(real_slots, u32::MAX);
-        particle[..self.n_particles]
-            .par_iter_mut()
-            .zip(self.order.sort(self.arch, input))
-            .for_each(|(slot, key)| *slot = key);
+        particle[..self.n_particles].par_iter_mut().zip(self.order.sort(input)).for_each(|(slot, key)| *slot = key);
         if let Some(ghosts) = self.views.ghosts_mut() {
             ghosts.create(&mut self.slots, input);
         }
         let used = self.slots.particle.len();
         self.slots.particle.resize(used + LANES, u32::MAX);
         for axis in [&mut self.slots.x, &mut self.slots.y, &mut self.slots.z] {
-            axis.resize(used + LANES, f32::NAN);
-            axis[used..].fill(f32::NAN);
+            axis.resize(used + LANES, Slots::FAR);
+            axis[used..].fill(Slots::FAR);
         }
         gather(&mut self.slots.kind, &self.slots.particle, input.kind, 0);
         self.tree.reshape(used / LANES);
@@ -180,6 +177,10 @@ impl Structure for Bvh {
 
     fn runs(&self, group: &GroupBox, out: &mut Vec<Run>) {
         self.arch.dispatch(Trace { bvh: self, group, out });
+    }
+
+    fn complete(&self) -> bool {
+        self.uniform_radius.is_some()
     }
 }
 

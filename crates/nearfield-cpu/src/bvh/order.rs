@@ -18,15 +18,15 @@ const CHUNK: usize = 1 << 12;
 
 /// Sorts particles along the curve, keeping its buffers.
 #[derive(Clone, Debug, Default)]
-pub(super) struct CurveOrder {
+pub(crate) struct CurveOrder {
     keys: Vec<Key>,
     sort: KeySort,
 }
 
 impl CurveOrder {
     /// The particles of `input` in order.
-    pub fn sort(&mut self, arch: Arch, input: &Input) -> impl IndexedParallelIterator<Item = u32> + '_ {
-        let curve = Curve::over(input);
+    pub fn sort(&mut self, input: &Input) -> impl IndexedParallelIterator<Item = u32> + '_ {
+        let (arch, curve) = (Arch::new(), Curve::over(input));
         self.keys.resize(input.len(), Key::default());
         self.keys.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, keys)| {
             arch.dispatch(Encode { curve: &curve, input, first: chunk * CHUNK, keys });

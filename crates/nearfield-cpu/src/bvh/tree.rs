@@ -197,15 +197,18 @@ impl WithSimd for FitLeaves<'_> {
                 let coordinates = self.input.position[axis];
                 for (out, &particle) in out.iter_mut().zip(particle) {
                     // Padding is the particle `u32::MAX`, which does not exist.
-                    *out =
-                        if (particle as usize) < coordinates.len() { coordinates[particle as usize] } else { f32::NAN };
+                    *out = if (particle as usize) < coordinates.len() {
+                        coordinates[particle as usize]
+                    } else {
+                        Slots::FAR
+                    };
                 }
                 let (mut lo, mut hi) = ([f32::INFINITY; LANES], [f32::NEG_INFINITY; LANES]);
                 for slot in 0..LANES {
                     let center = out[slot] + self.shift[lane][axis];
-                    // NaN must not reach the minimum.
-                    lo[slot] = if center.is_nan() { f32::INFINITY } else { center - half[slot] };
-                    hi[slot] = if center.is_nan() { f32::NEG_INFINITY } else { center + half[slot] };
+                    // Padding must not reach the bounds.
+                    lo[slot] = if out[slot] == Slots::FAR { f32::INFINITY } else { center - half[slot] };
+                    hi[slot] = if out[slot] == Slots::FAR { f32::NEG_INFINITY } else { center + half[slot] };
                 }
                 leaf.lo[axis] = smallest(lo);
                 leaf.hi[axis] = largest(hi);

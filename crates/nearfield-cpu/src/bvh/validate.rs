@@ -2,6 +2,7 @@
 
 use super::{Bvh, node::Aabb, tree::half_width};
 use crate::LANES;
+use crate::Slots;
 
 impl Bvh {
     /// Checks what tracing relies on: every particle in exactly one real slot, padding as promised, every slot's box
@@ -36,8 +37,8 @@ impl Bvh {
         }
         for (slot, &particle) in slots.particle.iter().enumerate() {
             let is_padding = particle == u32::MAX;
-            if slots.at(slot).iter().any(|c| c.is_nan() != is_padding) {
-                return Err(format!("slot {slot}: padding must be NaN, and nothing else may be"));
+            if slots.at(slot).iter().any(|&c| (c == Slots::FAR) != is_padding) {
+                return Err(format!("slot {slot}: padding must be far away, and nothing else may be"));
             }
             if (slot >= slots.len() && !is_padding) || (slot < self.n_particles && is_padding) {
                 return Err(format!("slot {slot}: padding out of place"));

@@ -1,0 +1,120 @@
+//! `nearfield run`: a simulation from a configuration file.
+
+use super::print_line;
+use crate::{arguments::Run as RunArguments, failure::Failure, progress::RunBar};
+use nearfield::{
+    config::Config,
+    run::{Record, Run},
+};
+use std::{
+    ops::ControlFlow,
+    path::Path,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering::Relaxed},
+    },
+};
+
+pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
+    let config = config(arguments)?;
+    if arguments.print_config {
+        print_line(config.to_toml()?.trim_end());
+        return Ok(());
+    }
+    let output = config.output.directory.clone();
+    let last_step = config.dynamics.steps;
+    let run = if arguments.resume { Run::resume(config)? } else { Run::new(config)? };
+    let simulation = run.simulation();
+    if let Some(moved) = run.moved() {
+        eprintln!("an earlier run in {} was moved to {}", output.display(), moved.display());
+    }
+    eprintln!("{} particles on {}", simulation.n_particles(), simulation.device());
+    let choice = simulation.choice();
+    eprintln!("method {}: {}", choice.method, choice.reason);
+    let bar = RunBar::new(simulation.step(), last_step, simulation.n_particles());
+    let stop = stop_on_interrupt();
+    let outcome = run.execute(&mut |progress| {
+        bar.update(&progress);
+        if stop.load(Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    bar.clear();
+    let record = outcome?;
+    summarise(&record, &output);
+    Ok(())
+}
+
+fn config(arguments: &RunArguments) -> Result<Config, Failure> {
+    let mut config = match &arguments.config {
+        Some(path) => Config::load(path, &arguments.set).map_err(|error| Failure::from(error).within(path.display()))?,
+        None => Config::parse("", &arguments.set, "")?,
+    };
+    if let Some(device) = arguments.device {
+        config.method.device = device;
+    }
+    if let Some(method) = arguments.method {
+        config.method.name = method;
+    }
+    if let Some(steps) = arguments.steps {
+        config.dynamics.steps = steps;
+    }
+    if let Some(directory) = &arguments.output {
+        config.output.directory.clone_from(directory);
+    }
+    config.validate()?;
+    Ok(config)
+}
+
+/// Set by the first Ctrl-C: the run then ends after the present step with a checkpoint. A second one kills.
+fn stop_on_interrupt() -> Arc<AtomicBool> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let seen = stop.clone();
+    let handler = move || {
+        if seen.swap(true, Relaxed) {
+            std::process::exit(1);
+        }
+        eprintln!("\ninterrupted: finishing the step and writing a checkpoint (again to quit at once)");
+    };
+    if let Err(error) = ctrlc::set_handler(handler) {
+        eprintln!("warning: Ctrl-C will not write a checkpoint: {error}");
+    }
+    stop
+}
+
+fn summarise(record: &Record, output: &Path) {
+    let report = &record.report;
+    print_line(&format!(
+        "{} steps of {} particles in {:.2} s: {:.1} steps/s, {:.2} million particle-steps/s",
+        record.steps - record.resumed_from.unwrap_or(0),
+        record.n_particles,
+        record.wall_seconds,
+        record.steps_per_second,
+        record.particle_steps_per_second / 1e6
+    ));
+    if let Some(t) = record.thermo {
+        let n = record.n_particles as f64;
+        print_line(&format!(
+            "temperature {:.5}, energy per particle {:.6} (potential {:.6}), pressure {:.5}",
+            t.temperature,
+            t.total_energy / n,
+            t.potential_energy / n,
+            t.pressure
+        ));
+    }
+    print_line(&format!(
+        "{} structure builds ({:.3} s), {} refits ({:.3} s), {} lists, queries {:.3} s, integration {:.3} s",
+        report.builds,
+        report.build_seconds,
+        report.refits,
+        report.refit_seconds,
+        report.list_builds,
+        report.query_seconds,
+        report.integrate_seconds
+    ));
+    if report.dangerous_builds > 0 {
+        eprintln!(
+            "warning: {} of {} lists lasted one step only; no pair was missed, but a larger method.skin would be faster",
+            report.dangerous_builds, report.list_builds
+        );
+    }
+    print_line(&format!("output in {}", output.display()));
+}

@@ -1,0 +1,187 @@
+//! One evaluation of the forces: upkeep of the structure, then the method's query.
+
+use super::{
+    maintain::Upkeep,
+    motion::Reference,
+    reorder,
+    results::Results,
+    rt_list::{Around, Outcome, StoredList},
+    state::State,
+};
+use crate::{
+    kernel::{ScatterSums, Sums, gather, scatter},
+    physics::Physics,
+};
+use nearfield_core::{
+    Error, Method, Plan, Quantities, Report, Result, System,
+    maintenance::{Action, Motion},
+};
+use std::{
+    sync::atomic::{AtomicU32, Ordering::Relaxed},
+    time::Instant,
+};
+
+/// A loaded system.
+pub(super) struct Loaded {
+    pub plan: Plan,
+    pub physics: Physics,
+    pub state: State,
+    pub results: Results,
+    pub upkeep: Upkeep,
+    pub scatter: ScatterSums,
+    pub list: StoredList,
+    /// Positions at the last structure build, for policies that ask.
+    pub reference: Reference,
+    pub report: Report,
+    pub record_history: bool,
+    /// Whether the forces belong to the present positions.
+    pub forces_valid: bool,
+    /// Evaluations since particles were last reordered.
+    since_reorder: u64,
+}
+
+impl Loaded {
+    pub fn new(system: &System, plan: &Plan) -> Self {
+        let physics = Physics::new(system);
+        Self {
+            plan: *plan,
+            state: State::new(system),
+            results: Results::default(),
+            upkeep: Upkeep::new(plan),
+            scatter: ScatterSums::default(),
+            list: StoredList::new(plan, &physics, &system.radii),
+            reference: Reference::default(),
+            report: Report::default(),
+            record_history: false,
+            forces_valid: false,
+            since_reorder: reorder::INTERVAL,
+            physics,
+        }
+    }
+
+    /// Computes forces, and what else is asked for, at the present positions, which belong to `step`.
+    pub fn evaluate(&mut self, quantities: Quantities, step: u64) -> Result<()> {
+        self.forces_valid = false;
+        self.prepare();
+        self.results.prepare(self.state.len(), quantities.energy);
+        let watch = NonFiniteWatch::default();
+        let start = Instant::now();
+        let Self { plan, physics, state, results, upkeep, scatter: sums, list, report, .. } = self;
+        let structure = upkeep.index.structure();
+        let sink = results.sink();
+        let finish = |i: u32, sums: &Sums| {
+            watch.see(sums.force, state.id[i as usize]);
+            // SAFETY: each method below finishes each particle once.
+            unsafe { sink.store(i as usize, sums) };
+        };
+        match plan.method {
+            Method::Brute | Method::Cell => {
+                gather(physics, structure, plan.deterministic, quantities.energy, &finish);
+            }
+            // The order of candidates depends on when the BVH was built, which policies decide by the clock:
+            // exact sums keep results independent of it.
+            Method::RtBoxes | Method::RtPerse => gather(physics, structure, true, quantities.energy, &finish),
+            Method::RtForces => {
+                sums.reset(state.len());
+                scatter(physics, structure, sums);
+                sums.for_each(&finish);
+            }
+            Method::RtList => {
+                let around = Around { state, physics, plan, structure, sums, report };
+                if list.gather(around, &finish) == Outcome::NeedsBuildWithoutSkin {
+                    let input = state.input(physics, list.radii(state, physics));
+                    upkeep.update(Action::Build, &input, report);
+                    let structure = upkeep.index.structure();
+                    let again = list.gather(Around { state, physics, plan, structure, sums, report }, &finish);
+                    debug_assert_eq!(again, Outcome::Done, "there is no skin left to take off");
+                }
+            }
+        }
+        self.account(start.elapsed().as_secs_f64());
+        if let Some(particle) = watch.first() {
+            return Err(self.diagnose(particle, step));
+        }
+        self.forces_valid = true;
+        Ok(())
+    }
+
+    /// Brings structure and list up to date with the positions.
+    pub fn prepare(&mut self) {
+        self.since_reorder += 1;
+        if self.plan.method.uses_list() && self.list.is_fresh(&self.state, &self.physics) {
+            return;
+        }
+        let motion = if self.upkeep.needs_motion() { self.motion() } else { Motion::default() };
+        let action = self.upkeep.next(motion);
+        if action == Action::Build && self.since_reorder >= reorder::INTERVAL {
+            if let Some(order) = reorder::order(self.plan.order, &self.state, &self.physics) {
+                self.state.reorder(&order);
+                self.results.reorder(&order);
+            }
+            self.since_reorder = 0;
+        }
+        let radii = self.list.radii(&self.state, &self.physics);
+        let input = self.state.input(&self.physics, radii);
+        self.upkeep.update(action, &input, &mut self.report);
+        if self.upkeep.was_built() && self.upkeep.needs_motion() {
+            self.reference.set(&self.state);
+        }
+        self.list.invalidate();
+    }
+
+    /// Books a query and tells the policy.
+    pub fn account(&mut self, seconds: f64) {
+        self.report.evaluations += 1;
+        self.report.query_seconds += seconds;
+        let cost = self.upkeep.record(seconds);
+        if self.record_history {
+            self.report.history.push(cost);
+        }
+    }
+
+    fn motion(&self) -> Motion {
+        let (state, physics) = (&self.state, &self.physics);
+        let radius = |i: usize| if state.radius.is_empty() { physics.cutoff() } else { state.radius[i] };
+        Motion { mean: self.reference.mean_over(state, &physics.sim_box, radius) }
+    }
+
+    /// Why the force on a particle (input index) is not finite.
+    pub fn diagnose(&self, particle: u32, step: u64) -> Error {
+        let state = &self.state;
+        let bad = state.id.iter().position(|&id| id == particle).expect("ids are a permutation");
+        let force = self.results.force.get(bad);
+        if self.physics.interaction.potential.diverges_at_zero() {
+            let place = state.position.get(bad);
+            let twin = (0..state.len()).find(|&i| i != bad && state.position.get(i) == place);
+            if let Some(twin) = twin {
+                let (a, b) = (particle as usize, state.id[twin] as usize);
+                return Error::Coincident(a.min(b), a.max(b));
+            }
+        }
+        let value = force.iter().copied().find(|f| !f.is_finite()).unwrap_or(f32::NAN);
+        Error::NonFinite { step, what: "force", particle: particle as usize, value: f64::from(value) }
+    }
+}
+
+/// Remembers the lowest-numbered particle whose force was not finite.
+pub(super) struct NonFiniteWatch(AtomicU32);
+
+impl Default for NonFiniteWatch {
+    fn default() -> Self {
+        Self(AtomicU32::new(u32::MAX))
+    }
+}
+
+impl NonFiniteWatch {
+    #[inline(always)]
+    pub fn see(&self, values: [f32; 3], id: u32) {
+        // Zero times anything finite is zero; NaN and infinity stay NaN.
+        if values.iter().map(|v| v * 0.0).sum::<f32>() != 0.0 {
+            self.0.fetch_min(id, Relaxed);
+        }
+    }
+
+    pub fn first(&self) -> Option<u32> {
+        Some(self.0.load(Relaxed)).filter(|&id| id != u32::MAX)
+    }
+}

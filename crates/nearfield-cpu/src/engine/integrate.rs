@@ -1,0 +1,155 @@
+//! Velocity Verlet and its thermostats, one particle at a time.
+//!
+//! A step is `start` (half kick, drift, boundaries), new forces, `finish` (half kick). Langevin dynamics are the
+//! BAOAB splitting: the drift is two half drifts with the Ornstein-Uhlenbeck step between (Leimkuhler and Matthews,
+//! Appl. Math. Res. Express 2013, doi:10.1093/amrx/abs010). Noise is a function of (seed, step, id) alone.
+
+use nearfield_core::{
+    Boundary, Dynamics, Ensemble, ParticleType, SimBox,
+    philox::{Stream, normals},
+};
+
+/// What changes of a particle in a step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Moving {
+    pub position: [f32; 3],
+    pub velocity: [f32; 3],
+    pub image: [i32; 3],
+}
+
+/// The integrator of one run.
+#[derive(Clone, Debug)]
+pub(super) struct Integrator {
+    sim_box: SimBox,
+    dt: f32,
+    /// Half a time step over the mass, by type.
+    half_kick: Vec<f32>,
+    /// Largest speed, from the displacement limit; infinite without.
+    speed_limit: f32,
+    langevin: Option<Langevin>,
+}
+
+#[derive(Clone, Debug)]
+struct Langevin {
+    seed: u64,
+    /// exp(-friction dt)
+    damping: f32,
+    /// Standard deviation of the noise, by type.
+    noise: Vec<f32>,
+}
+
+impl Integrator {
+    pub fn new(sim_box: SimBox, dynamics: &Dynamics, types: &[ParticleType]) -> Self {
+        let dt = dynamics.dt;
+        let langevin = match dynamics.ensemble {
+            Ensemble::Langevin { temperature, friction } => {
+                let damping = (-friction * f64::from(dt)).exp();
+                let noise =
+                    |t: &ParticleType| ((1.0 - damping * damping) * temperature / f64::from(t.mass)).sqrt() as f32;
+                Some(Langevin {
+                    seed: dynamics.seed,
+                    damping: damping as f32,
+                    noise: types.iter().map(noise).collect(),
+                })
+            }
+            Ensemble::Nve | Ensemble::Rescale { .. } => None,
+        };
+        Self {
+            sim_box,
+            dt,
+            half_kick: types.iter().map(|t| 0.5 * dt / t.mass).collect(),
+            speed_limit: if dynamics.max_displacement > 0.0 { dynamics.max_displacement / dt } else { f32::INFINITY },
+            langevin,
+        }
+    }
+
+    /// First half kick and drift of `step`.
+    #[inline(always)]
+    pub fn start(&self, p: &mut Moving, force: [f32; 3], kind: u32, id: u32, step: u64) {
+        self.kick(p, force, kind);
+        self.limit(p);
+        match &self.langevin {
+            None => self.drift(p, self.dt),
+            Some(langevin) => {
+                self.drift(p, 0.5 * self.dt);
+                let noise = normals(langevin.seed, Stream::Langevin, step, id);
+                for axis in 0..3 {
+                    p.velocity[axis] =
+                        langevin.damping * p.velocity[axis] + langevin.noise[kind as usize] * noise[axis] as f32;
+                }
+                self.limit(p);
+                self.drift(p, 0.5 * self.dt);
+            }
+        }
+    }
+
+    /// Second half kick.
+    #[inline(always)]
+    pub fn finish(&self, p: &mut Moving, force: [f32; 3], kind: u32) {
+        self.kick(p, force, kind);
+    }
+
+    #[inline(always)]
+    fn kick(&self, p: &mut Moving, force: [f32; 3], kind: u32) {
+        let half_kick = self.half_kick[kind as usize];
+        for axis in 0..3 {
+            p.velocity[axis] += half_kick * force[axis];
+        }
+    }
+
+    /// Shortens a velocity that would carry the particle beyond the displacement limit.
+    #[inline(always)]
+    fn limit(&self, p: &mut Moving) {
+        if self.speed_limit == f32::INFINITY {
+            return;
+        }
+        // In f64: capped forces of 1e30 square beyond f32.
+        let speed = p.velocity.iter().map(|&v| f64::from(v) * f64::from(v)).sum::<f64>().sqrt();
+        if speed > f64::from(self.speed_limit) {
+            let scale = f64::from(self.speed_limit) / speed;
+            p.velocity = p.velocity.map(|v| (f64::from(v) * scale) as f32);
+        }
+    }
+
+    #[inline(always)]
+    fn drift(&self, p: &mut Moving, dt: f32) {
+        for axis in 0..3 {
+            p.position[axis] += dt * p.velocity[axis];
+        }
+        let (lo, hi) = (self.sim_box.lo(), self.sim_box.hi());
+        let inside = (0..3).all(|axis| p.position[axis] >= lo[axis] && p.position[axis] < hi[axis]);
+        if !inside {
+            self.apply_boundaries(p);
+        }
+    }
+
+    /// Wraps on periodic axes and reflects at walls.
+    #[cold]
+    fn apply_boundaries(&self, p: &mut Moving) {
+        let (wrapped, crossings) = self.sim_box.wrap(p.position);
+        p.position = wrapped;
+        for axis in 0..3 {
+            p.image[axis] = p.image[axis].wrapping_add(crossings[axis]);
+            if self.sim_box.boundary()[axis] == Boundary::Wall {
+                self.reflect(p, axis);
+            }
+        }
+    }
+
+    fn reflect(&self, p: &mut Moving, axis: usize) {
+        let (lo, hi) = (self.sim_box.lo()[axis], self.sim_box.hi()[axis]);
+        let x = p.position[axis];
+        if (lo..=hi).contains(&x) || !x.is_finite() {
+            return;
+        }
+        // A fast particle may bounce several times: unfold by the period of two lengths.
+        let (length, from_lo) = (f64::from(hi) - f64::from(lo), f64::from(x) - f64::from(lo));
+        let phase = from_lo.rem_euclid(2.0 * length);
+        let reflected = if phase > length { 2.0 * length - phase } else { phase };
+        p.position[axis] = ((f64::from(lo) + reflected) as f32).clamp(lo, hi);
+        // An odd number of bounces turns the velocity.
+        if (from_lo / length).floor().rem_euclid(2.0) == 1.0 {
+            p.velocity[axis] = -p.velocity[axis];
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! Width and number of the pencils of each class.
+
+use super::PENCIL_OCCUPANCY;
+use super::classes::Class;
+use super::survey::Bulk;
+
+/// Fewest particles to a pencil on average, which bounds memory where particles cluster.
+const LEAST_PER_PENCIL: f64 = 8.0;
+
+/// A row of cells along x. What its fields say of space is taken from its particles, so nothing is lost by rounding.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Pencil {
+    /// First slot.
+    pub slots: u32,
+    /// First cell.
+    pub cells: u32,
+    /// Least x.
+    pub x0: f32,
+    /// Cells per length.
+    pub cells_per_length: f32,
+    /// Least and largest y.
+    pub y: [f32; 2],
+    /// Least and largest z.
+    pub z: [f32; 2],
+}
+
+/// The pencils of one class: `n[1]` layers along z of `n[0]` pencils along y.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Layout {
+    /// Largest radius of the class.
+    pub limit: f32,
+    /// Largest radius of the class; zero where queries bring the one radius there is.
+    pub largest: f32,
+    /// Index of the first pencil.
+    pub first: usize,
+    /// Pencils along y and z.
+    pub n: [usize; 2],
+    /// Where they begin; the outermost extend to infinity.
+    pub lo: [f32; 2],
+    /// Pencils per length.
+    pub per_length: [f32; 2],
+    /// Longest extent of a group along x.
+    pub group_length: f32,
+}
+
+impl Layout {
+    /// Pencil number along `axis` (0 is y, 1 is z). It never decreases with `value`, rounding included, so the
+    /// particles between two values are in the pencils between theirs.
+    #[inline(always)]
+    pub fn coordinate(&self, axis: usize, value: f32) -> usize {
+        (((value - self.lo[axis]) * self.per_length[axis]) as usize).min(self.n[axis] - 1)
+    }
+
+    /// Pencil of a point, counted from the first pencil of the first class.
+    #[inline(always)]
+    pub fn pencil_of(&self, y: f32, z: f32) -> usize {
+        self.first + self.coordinate(1, z) * self.n[0] + self.coordinate(0, y)
+    }
+
+    /// Number of pencils.
+    pub fn len(&self) -> usize {
+        self.n[0] * self.n[1]
+    }
+}
+
+/// Lays the pencils of every class out, one class after the other.
+pub(super) fn plan(classes: &[Class], bulk: &Bulk, out: &mut Vec<Layout>) {
+    let lengths = bulk.lengths();
+    out.clear();
+    let mut first = 0;
+    for class in classes {
+        let width = pencil_width(class.n as f64, bulk.clustering, lengths);
+        let n = [1, 2].map(|axis| ((lengths[axis] / width) as usize).max(1));
+        let layout = Layout {
+            limit: class.limit,
+            largest: class.largest,
+            first,
+            n,
+            lo: [bulk.lo[1], bulk.lo[2]],
+            per_length: std::array::from_fn(|a| {
+                let per_length = (n[a] as f64 / lengths[a + 1]) as f32;
+                if per_length.is_finite() { per_length } else { 0.0 }
+            }),
+            group_length: (2.5 * width) as f32,
+        };
+        first += layout.len();
+        out.push(layout);
+    }
+}
+
+/// The width w for which a cube of w holds [`PENCIL_OCCUPANCY`] particles at the density they see, or more where
+/// pencils would hold fewer than [`LEAST_PER_PENCIL`]. Axes shorter than w count as w.
+fn pencil_width(n: f64, clustering: f64, lengths: [f64; 3]) -> f64 {
+    let cubes = n * clustering / PENCIL_OCCUPANCY;
+    let mut sorted = lengths;
+    sorted.sort_unstable_by(f64::total_cmp);
+    let [a, b, c] = sorted;
+    let by_volume = (a * b * c / cubes).cbrt();
+    let by_area = (b * c / cubes).sqrt();
+    let width = if by_volume <= a {
+        by_volume
+    } else if by_area <= b {
+        by_area
+    } else {
+        c / cubes
+    };
+    let pencils = (n / LEAST_PER_PENCIL).max(1.0);
+    let [_, y, z] = lengths;
+    let width = width.max((y * z / pencils).sqrt()).max(y / pencils).max(z / pencils);
+    if width > 0.0 && width.is_finite() { width } else { f64::MAX }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pencils_are_bounded_by_the_particles_in_any_box() {
+        for lengths in
+            [[1e3, 1e3, 1e3], [1e30, 1.0, 1.0], [1.0, 1e30, 1e-30], [0.0, 5.0, 1e9], [0.0; 3], [3.0, 0.0, 0.0]]
+        {
+            for clustering in [1.0, 1e4] {
+                for n in [0usize, 1, 7, 100_000] {
+                    let hi = lengths.map(|l| l as f32);
+                    let bulk = Bulk { n, lo: [0.0; 3], hi, clustering };
+                    let classes = super::super::classes::single(n);
+                    let mut layouts = Vec::new();
+                    plan(&classes, &bulk, &mut layouts);
+                    assert!(layouts[0].len() <= n / 8 + 1, "{lengths:?} {clustering} {n}: {layouts:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_uniform_cube_has_pencils_of_about_eight_to_a_cube() {
+        let width = pencil_width(1e6, 1.0, [1000.0; 3]);
+        assert!((width - 20.0).abs() < 1e-9, "{width}");
+    }
+}

@@ -1,0 +1,106 @@
+//! The cell grid: pencils of cells over bins of similar radius.
+//!
+//! Space is cut along y and z into square *pencils*; the particles of a pencil are ordered along x by fine *cells* and
+//! lie next to each other in memory. What a group of queries can reach in one pencil is therefore one run of slots,
+//! found by two look-ups: the reach along x is `sqrt(r² - d²)`, with d the distance from the group to the pencil.
+//!
+//! - Pencil widths follow the particles, never the radius: about [`PENCIL_OCCUPANCY`] particles to a cube of that
+//!   width. So memory stays proportional to N, however sparse the box.
+//! - A pencil knows the bounds of its own particles and cuts its own cells, so clusters get fine cells, and far outliers
+//!   on open axes only stretch the outermost pencils.
+//! - Periodic images are searched by moving the group, not by wrapping cells: each pencil is visited at most once for
+//!   an image, which also holds in boxes only a few pencils wide.
+//! - Particles of similar radius form a *class* with pencils of its own. The pair range is max(r_i, r_j), so a group
+//!   searches each class as far as the larger of its own radius and the largest of that class: a few large particles
+//!   do not widen the search among the small ones.
+
+mod classes;
+mod layout;
+mod rows;
+mod sort;
+mod survey;
+
+use crate::{GroupBox, Input, InputRadii, Run, Slots, Structure};
+use layout::{Layout, Pencil};
+use std::ops::Range;
+use survey::Bounds;
+
+/// Particles to a cube as wide as a pencil.
+const PENCIL_OCCUPANCY: f64 = 8.0;
+
+/// Particles to a cell, along x in its pencil.
+const CELL_OCCUPANCY: usize = 2;
+
+/// Most particles in a group.
+const GROUP_SIZE: usize = 8;
+
+/// A cell grid over N particles.
+///
+/// Buffers are kept from one [`Grid::build`] to the next. The order of slots depends on the input alone, not on the
+/// number of threads.
+#[derive(Debug, Default)]
+pub struct Grid {
+    slots: Slots,
+    layouts: Vec<Layout>,
+    /// Pencils of all classes, one after the other, and a sentinel.
+    pencils: Vec<Pencil>,
+    /// First slot of each cell of all pencils, and a sentinel.
+    cells: Vec<u32>,
+    /// First slot of each group, and a sentinel.
+    groups: Vec<u32>,
+    bounds: Bounds,
+    /// Period of each axis, zero where it has none.
+    period: [f32; 3],
+    scratch: sort::Scratch,
+}
+
+impl Grid {
+    /// An empty grid.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Sorts the particles of `input` into cells.
+    pub fn build(&mut self, input: &Input) {
+        let lengths = input.sim_box.lengths();
+        self.period = std::array::from_fn(|axis| if input.sim_box.is_periodic(axis) { lengths[axis] } else { 0.0 });
+        self.bounds = Bounds::of(input);
+        let bulk = survey::Bulk::of(input, &self.bounds);
+        let classes = match input.radii {
+            InputRadii::Uniform(_) => classes::single(input.len()),
+            InputRadii::PerParticle(radii) => classes::divide(radii, &bulk),
+        };
+        layout::plan(&classes, &bulk, &mut self.layouts);
+        self.sort(input);
+    }
+
+    /// Bytes held, buffers of the build included.
+    pub fn bytes(&self) -> usize {
+        self.slots.bytes()
+            + self.layouts.capacity() * size_of::<Layout>()
+            + self.pencils.capacity() * size_of::<Pencil>()
+            + 4 * (self.cells.capacity() + self.groups.capacity())
+            + self.scratch.bytes()
+    }
+}
+
+impl Structure for Grid {
+    fn slots(&self) -> &Slots {
+        &self.slots
+    }
+
+    fn n_groups(&self) -> usize {
+        self.groups.len().saturating_sub(1)
+    }
+
+    fn group(&self, g: usize) -> Range<usize> {
+        self.groups[g] as usize..self.groups[g + 1] as usize
+    }
+
+    fn runs(&self, group: &GroupBox, out: &mut Vec<Run>) {
+        self.find_rows(group, out);
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,92 @@
+//! Sixteen lanes of f32 and u32 on whatever vector unit there is, chosen once per kernel at run time.
+//!
+//! A kernel is written once over [`Lanes`] and given to [`Isa::run`], which compiles it for each instruction set. All
+//! operations are exact and equal on every one of them. Everything a kernel calls must be `#[inline(always)]`: code
+//! outside the kernel's own function is compiled without its instruction set.
+
+mod portable;
+#[cfg(target_arch = "x86_64")]
+mod x86;
+
+pub(crate) use portable::Portable;
+
+/// Sixteen lanes; masks are one bit a lane, the lowest bit for lane 0.
+pub(crate) trait Lanes: Copy {
+    /// Sixteen f32.
+    type F: Copy;
+    /// Sixteen u32 below 2³¹, or the padding `u32::MAX`.
+    type U: Copy;
+
+    fn splat(self, value: f32) -> Self::F;
+    fn load(self, from: &[f32; 16]) -> Self::F;
+    fn store(self, value: Self::F, to: &mut [f32; 16]);
+    fn add(self, a: Self::F, b: Self::F) -> Self::F;
+    fn sub(self, a: Self::F, b: Self::F) -> Self::F;
+    fn mul(self, a: Self::F, b: Self::F) -> Self::F;
+    fn mul_add(self, a: Self::F, b: Self::F, c: Self::F) -> Self::F;
+    /// The larger; unspecified where one is NaN.
+    fn max(self, a: Self::F, b: Self::F) -> Self::F;
+    /// a < b; false where one is NaN.
+    fn lt(self, a: Self::F, b: Self::F) -> u16;
+
+    fn splat_u(self, value: u32) -> Self::U;
+    fn load_u(self, from: &[u32; 16]) -> Self::U;
+    fn store_u(self, value: Self::U, to: &mut [u32; 16]);
+    fn ne_u(self, a: Self::U, b: Self::U) -> u16;
+    /// a > b, for values below 2³¹.
+    fn gt_u(self, a: Self::U, b: Self::U) -> u16;
+
+    /// Stores the lanes of the mask next to each other, and anything after them.
+    fn compress(self, mask: u16, value: Self::F, to: &mut [f32; 16]);
+    /// As [`Lanes::compress`], for u32.
+    fn compress_u(self, mask: u16, value: Self::U, to: &mut [u32; 16]);
+}
+
+/// Work to be done in one instruction set.
+pub(crate) trait Kernel {
+    /// What it gives.
+    type Output;
+
+    /// The work. Implementations are `#[inline(always)]`.
+    fn run<L: Lanes>(self, lanes: L) -> Self::Output;
+}
+
+/// An instruction set that this machine has.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Isa {
+    #[cfg(target_arch = "x86_64")]
+    Avx512(pulp::x86::V4),
+    #[cfg(target_arch = "x86_64")]
+    Avx2(pulp::x86::V3),
+    Portable,
+}
+
+impl Isa {
+    /// The best one.
+    pub fn detect() -> Self {
+        Self::available().next().expect("the portable one is always there")
+    }
+
+    /// All of this machine, the best first.
+    pub fn available() -> impl Iterator<Item = Self> {
+        #[cfg(target_arch = "x86_64")]
+        let vector = [pulp::x86::V4::try_new().map(Self::Avx512), pulp::x86::V3::try_new().map(Self::Avx2)];
+        #[cfg(not(target_arch = "x86_64"))]
+        let vector = [None; 2];
+        vector.into_iter().flatten().chain([Self::Portable])
+    }
+
+    /// Runs a kernel compiled for this instruction set.
+    pub fn run<K: Kernel>(self, kernel: K) -> K::Output {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512(v4) => v4.vectorize(x86::OnAvx512 { lanes: v4, kernel }),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(v3) => v3.vectorize(x86::OnAvx2 { lanes: v3, kernel }),
+            Self::Portable => kernel.run(Portable),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

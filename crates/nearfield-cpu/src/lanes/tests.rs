@@ -1,0 +1,54 @@
+use super::*;
+
+/// Everything a kernel can compute, on values with ties, NaN and padding.
+struct Everything<'a> {
+    a: &'a [f32; 16],
+    b: &'a [f32; 16],
+    u: &'a [u32; 16],
+    v: &'a [u32; 16],
+}
+
+impl Kernel for Everything<'_> {
+    type Output = (Vec<u32>, Vec<u16>);
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, l: L) -> Self::Output {
+        let (a, b, c) = (l.load(self.a), l.load(self.b), l.splat(0.3));
+        let (u, v) = (l.load_u(self.u), l.load_u(self.v));
+        let masks = vec![l.lt(a, b), l.ne_u(u, v), l.gt_u(u, v), l.ne_u(u, l.splat_u(3))];
+        let mut bits = Vec::new();
+        let mut out = [0.0; 16];
+        for value in [l.add(a, b), l.sub(a, b), l.mul(a, b), l.mul_add(a, b, c)] {
+            l.store(value, &mut out);
+            bits.extend(out.iter().map(|x| if x.is_nan() { 1 } else { x.to_bits() }));
+        }
+        l.store(l.max(b, c), &mut out);
+        bits.extend(out.map(f32::to_bits));
+        let mut out_u = [0; 16];
+        l.store_u(v, &mut out_u);
+        bits.extend(out_u);
+        for mask in [masks[0], masks[1], 0, 1, 0x8000, 0xffff, 0x5aa5, 0x00ff, 0xff00] {
+            let n = mask.count_ones() as usize;
+            l.compress(mask, b, &mut out);
+            l.compress_u(mask, u, &mut out_u);
+            bits.extend(out[..n].iter().map(|x| x.to_bits()));
+            bits.extend(&out_u[..n]);
+        }
+        (bits, masks)
+    }
+}
+
+#[test]
+fn every_instruction_set_computes_the_same_bits() {
+    let mut a: [f32; 16] = std::array::from_fn(|k| 0.1 * k as f32 - 0.7);
+    let b: [f32; 16] = std::array::from_fn(|k| if k % 3 == 0 { a[k] } else { 0.37 * k as f32 - 2.0 });
+    a[5] = f32::NAN;
+    let u: [u32; 16] = std::array::from_fn(|k| (k as u32 * 7) % 16);
+    let v: [u32; 16] = std::array::from_fn(|k| if k % 4 == 0 { u[k] } else { k as u32 });
+    let run = |isa: Isa| isa.run(Everything { a: &a, b: &b, u: &u, v: &v });
+    let expected = run(Isa::Portable);
+    assert_eq!(expected.1[0] >> 5 & 1, 0, "NaN is not less than anything");
+    for isa in Isa::available() {
+        assert_eq!(run(isa), expected, "{isa:?}");
+    }
+}

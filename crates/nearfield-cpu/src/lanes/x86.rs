@@ -1,0 +1,249 @@
+//! Lanes as one AVX-512 register or two AVX2 registers.
+
+use super::{Kernel, Lanes};
+use pulp::x86::{V3, V4};
+use pulp::{NullaryFnOnce, cast};
+use std::arch::x86_64::{__m256, __m256i, __m512, __m512i, _CMP_LT_OQ};
+
+/// A kernel to run under AVX-512.
+pub(super) struct OnAvx512<K> {
+    pub lanes: V4,
+    pub kernel: K,
+}
+
+impl<K: Kernel> NullaryFnOnce for OnAvx512<K> {
+    type Output = K::Output;
+
+    #[inline(always)]
+    fn call(self) -> K::Output {
+        self.kernel.run(self.lanes)
+    }
+}
+
+/// A kernel to run under AVX2 and FMA.
+pub(super) struct OnAvx2<K> {
+    pub lanes: V3,
+    pub kernel: K,
+}
+
+impl<K: Kernel> NullaryFnOnce for OnAvx2<K> {
+    type Output = K::Output;
+
+    #[inline(always)]
+    fn call(self) -> K::Output {
+        self.kernel.run(self.lanes)
+    }
+}
+
+impl Lanes for V4 {
+    type F = __m512;
+    type U = __m512i;
+
+    #[inline(always)]
+    fn splat(self, value: f32) -> __m512 {
+        self.avx512f._mm512_set1_ps(value)
+    }
+
+    #[inline(always)]
+    fn load(self, from: &[f32; 16]) -> __m512 {
+        cast(*from)
+    }
+
+    #[inline(always)]
+    fn store(self, value: __m512, to: &mut [f32; 16]) {
+        *to = cast(value);
+    }
+
+    #[inline(always)]
+    fn add(self, a: __m512, b: __m512) -> __m512 {
+        self.avx512f._mm512_add_ps(a, b)
+    }
+
+    #[inline(always)]
+    fn sub(self, a: __m512, b: __m512) -> __m512 {
+        self.avx512f._mm512_sub_ps(a, b)
+    }
+
+    #[inline(always)]
+    fn mul(self, a: __m512, b: __m512) -> __m512 {
+        self.avx512f._mm512_mul_ps(a, b)
+    }
+
+    #[inline(always)]
+    fn mul_add(self, a: __m512, b: __m512, c: __m512) -> __m512 {
+        self.avx512f._mm512_fmadd_ps(a, b, c)
+    }
+
+    #[inline(always)]
+    fn max(self, a: __m512, b: __m512) -> __m512 {
+        self.avx512f._mm512_max_ps(a, b)
+    }
+
+    #[inline(always)]
+    fn lt(self, a: __m512, b: __m512) -> u16 {
+        self.avx512f._mm512_cmp_ps_mask::<_CMP_LT_OQ>(a, b)
+    }
+
+    #[inline(always)]
+    fn splat_u(self, value: u32) -> __m512i {
+        self.avx512f._mm512_set1_epi32(value.cast_signed())
+    }
+
+    #[inline(always)]
+    fn load_u(self, from: &[u32; 16]) -> __m512i {
+        cast(*from)
+    }
+
+    #[inline(always)]
+    fn store_u(self, value: __m512i, to: &mut [u32; 16]) {
+        *to = cast(value);
+    }
+
+    #[inline(always)]
+    fn ne_u(self, a: __m512i, b: __m512i) -> u16 {
+        self.avx512f._mm512_cmpneq_epi32_mask(a, b)
+    }
+
+    #[inline(always)]
+    fn gt_u(self, a: __m512i, b: __m512i) -> u16 {
+        self.avx512f._mm512_cmpgt_epi32_mask(a, b)
+    }
+
+    // In a register and then stored whole: the compressing store is microcoded on some processors.
+    #[inline(always)]
+    fn compress(self, mask: u16, value: __m512, to: &mut [f32; 16]) {
+        *to = cast(self.avx512f._mm512_maskz_compress_ps(mask, value));
+    }
+
+    #[inline(always)]
+    fn compress_u(self, mask: u16, value: __m512i, to: &mut [u32; 16]) {
+        *to = cast(self.avx512f._mm512_maskz_compress_epi32(mask, value));
+    }
+}
+
+/// For each mask of eight lanes, the permutation that brings its lanes to the front.
+static FRONT: [[u32; 8]; 256] = {
+    let mut table = [[0; 8]; 256];
+    let mut mask = 0;
+    while mask < 256 {
+        let (mut lane, mut at) = (0, 0);
+        while lane < 8 {
+            if mask >> lane & 1 == 1 {
+                table[mask][at] = lane as u32;
+                at += 1;
+            }
+            lane += 1;
+        }
+        mask += 1;
+    }
+    table
+};
+
+#[inline(always)]
+fn both<T: Copy, R>(a: [T; 2], b: [T; 2], op: impl Fn(T, T) -> R) -> [R; 2] {
+    [op(a[0], b[0]), op(a[1], b[1])]
+}
+
+#[inline(always)]
+fn compress_halves(v3: V3, mask: u16, value: [__m256i; 2]) -> ([u32; 8], usize, [u32; 8]) {
+    let [low, high] = mask.to_le_bytes();
+    let front = |half: u8, value| {
+        cast::<__m256i, [u32; 8]>(v3.avx2._mm256_permutevar8x32_epi32(value, cast(FRONT[usize::from(half)])))
+    };
+    (front(low, value[0]), low.count_ones() as usize, front(high, value[1]))
+}
+
+impl Lanes for V3 {
+    type F = [__m256; 2];
+    type U = [__m256i; 2];
+
+    #[inline(always)]
+    fn splat(self, value: f32) -> [__m256; 2] {
+        [self.avx._mm256_set1_ps(value); 2]
+    }
+
+    #[inline(always)]
+    fn load(self, from: &[f32; 16]) -> [__m256; 2] {
+        cast(*from)
+    }
+
+    #[inline(always)]
+    fn store(self, value: [__m256; 2], to: &mut [f32; 16]) {
+        *to = cast(value);
+    }
+
+    #[inline(always)]
+    fn add(self, a: [__m256; 2], b: [__m256; 2]) -> [__m256; 2] {
+        both(a, b, |a, b| self.avx._mm256_add_ps(a, b))
+    }
+
+    #[inline(always)]
+    fn sub(self, a: [__m256; 2], b: [__m256; 2]) -> [__m256; 2] {
+        both(a, b, |a, b| self.avx._mm256_sub_ps(a, b))
+    }
+
+    #[inline(always)]
+    fn mul(self, a: [__m256; 2], b: [__m256; 2]) -> [__m256; 2] {
+        both(a, b, |a, b| self.avx._mm256_mul_ps(a, b))
+    }
+
+    #[inline(always)]
+    fn mul_add(self, a: [__m256; 2], b: [__m256; 2], c: [__m256; 2]) -> [__m256; 2] {
+        [self.fma._mm256_fmadd_ps(a[0], b[0], c[0]), self.fma._mm256_fmadd_ps(a[1], b[1], c[1])]
+    }
+
+    #[inline(always)]
+    fn max(self, a: [__m256; 2], b: [__m256; 2]) -> [__m256; 2] {
+        both(a, b, |a, b| self.avx._mm256_max_ps(a, b))
+    }
+
+    #[inline(always)]
+    fn lt(self, a: [__m256; 2], b: [__m256; 2]) -> u16 {
+        u16::from_le_bytes(both(a, b, |a, b| {
+            self.avx._mm256_movemask_ps(self.avx._mm256_cmp_ps::<_CMP_LT_OQ>(a, b)) as u8
+        }))
+    }
+
+    #[inline(always)]
+    fn splat_u(self, value: u32) -> [__m256i; 2] {
+        [self.avx._mm256_set1_epi32(value.cast_signed()); 2]
+    }
+
+    #[inline(always)]
+    fn load_u(self, from: &[u32; 16]) -> [__m256i; 2] {
+        cast(*from)
+    }
+
+    #[inline(always)]
+    fn store_u(self, value: [__m256i; 2], to: &mut [u32; 16]) {
+        *to = cast(value);
+    }
+
+    #[inline(always)]
+    fn ne_u(self, a: [__m256i; 2], b: [__m256i; 2]) -> u16 {
+        !u16::from_le_bytes(both(a, b, |a, b| {
+            self.avx._mm256_movemask_ps(cast(self.avx2._mm256_cmpeq_epi32(a, b))) as u8
+        }))
+    }
+
+    #[inline(always)]
+    fn gt_u(self, a: [__m256i; 2], b: [__m256i; 2]) -> u16 {
+        u16::from_le_bytes(both(a, b, |a, b| {
+            self.avx._mm256_movemask_ps(cast(self.avx2._mm256_cmpgt_epi32(a, b))) as u8
+        }))
+    }
+
+    #[inline(always)]
+    fn compress(self, mask: u16, value: [__m256; 2], to: &mut [f32; 16]) {
+        let (low, n_low, high) = compress_halves(self, mask, value.map(cast));
+        to[..8].copy_from_slice(&low.map(f32::from_bits));
+        to[n_low..n_low + 8].copy_from_slice(&high.map(f32::from_bits));
+    }
+
+    #[inline(always)]
+    fn compress_u(self, mask: u16, value: [__m256i; 2], to: &mut [u32; 16]) {
+        let (low, n_low, high) = compress_halves(self, mask, value);
+        to[..8].copy_from_slice(&low);
+        to[n_low..n_low + 8].copy_from_slice(&high);
+    }
+}

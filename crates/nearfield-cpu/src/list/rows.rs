@@ -1,0 +1,219 @@
+//! Rows of neighbours of a range of groups, in the structure's order: the unit of parallel and of batched work.
+
+use super::candidates::Candidates;
+use super::rule::Rule;
+use super::scan::Scan;
+use crate::lanes::Isa;
+use crate::{Input, InputRadii, LANES, Run, Structure};
+use nearfield_core::{ListKind, SimBox};
+use std::ops::Range;
+
+/// Where queries come from: a structure, read only for its slots and groups.
+#[derive(Clone, Copy)]
+pub(crate) struct Queries<'a> {
+    pub structure: &'a dyn Structure,
+    /// The radius, where slots carry none.
+    pub uniform: f32,
+}
+
+impl<'a> Queries<'a> {
+    /// The particles of `input`, in the slots of `structure`.
+    pub fn new(structure: &'a dyn Structure, input: &Input) -> Self {
+        let uniform = match input.radii {
+            InputRadii::Uniform(r) => r,
+            InputRadii::PerParticle(_) => 0.0,
+        };
+        Self { structure, uniform }
+    }
+}
+
+/// What is kept of each neighbour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub(crate) enum Contents {
+    /// Nothing: rows are only counted.
+    #[default]
+    Count,
+    /// Its index, and more where asked for.
+    Rows { images: bool, distances: bool },
+}
+
+/// Neighbours of the particles of some groups. Buffers are kept for the next range.
+#[derive(Clone, Debug, Default)]
+pub struct Rows {
+    pub(super) runs: Vec<Run>,
+    pub(super) candidates: Candidates,
+    pub(super) output: Output,
+}
+
+/// One row of [`Rows`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row<'a> {
+    /// The particle, in input order.
+    pub particle: u32,
+    /// Its neighbours, in input order.
+    pub neighbors: &'a [u32],
+    /// Their periodic images: `dr = (x_j - x_i) + image * box length`. Empty where not asked for.
+    pub images: &'a [[i8; 3]],
+    /// Their squared distances. Empty where not asked for.
+    pub r2: &'a [f32],
+}
+
+/// Rows as one array after the other. `indices` and `r2` are longer than `len`: stores write whole chunks.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Output {
+    pub len: usize,
+    contents: Contents,
+    pub images: Vec<[i8; 3]>,
+    indices: Vec<u32>,
+    r2: Vec<f32>,
+    particle: Vec<u32>,
+    ends: Vec<usize>,
+}
+
+impl Output {
+    pub fn clear(&mut self, contents: Contents) {
+        self.contents = contents;
+        self.len = 0;
+        self.images.clear();
+        self.particle.clear();
+        self.ends.clear();
+    }
+
+    /// Makes room for a row of `most` neighbours.
+    #[inline(always)]
+    pub fn reserve(&mut self, most: usize) {
+        let Contents::Rows { distances, .. } = self.contents else { return };
+        let needed = self.len + most + LANES;
+        if self.indices.len() < needed {
+            self.indices.resize(needed.next_power_of_two(), 0);
+        }
+        if distances && self.r2.len() < needed {
+            self.r2.resize(needed.next_power_of_two(), 0.0);
+        }
+    }
+
+    #[inline(always)]
+    pub fn index_chunk(&mut self, at: usize) -> &mut [u32; LANES] {
+        self.indices[at..].first_chunk_mut().expect("room was made")
+    }
+
+    #[inline(always)]
+    pub fn r2_chunk(&mut self, at: usize) -> &mut [f32; LANES] {
+        self.r2[at..].first_chunk_mut().expect("room was made")
+    }
+
+    #[inline(always)]
+    pub fn finish_row(&mut self, particle: u32, end: usize) {
+        self.particle.push(particle);
+        self.ends.push(end);
+        self.len = end;
+    }
+}
+
+impl Rows {
+    /// Lists the neighbours of the particles in `groups` of `structure`, which was built from `input`.
+    ///
+    /// For callers that cannot hold all rows at once. Rows come in the order of slots; a half list keeps j > i.
+    /// A structure that is not [`Structure::complete`] gives each pair once, in the row of its smaller radius (of
+    /// the smaller index where equal), whatever `kind` is.
+    pub fn list(
+        &mut self,
+        structure: &dyn Structure,
+        input: &Input,
+        groups: Range<usize>,
+        kind: ListKind,
+        images: bool,
+        distances: bool,
+    ) {
+        let contents = Contents::Rows { images, distances };
+        let rule = Rule::for_list(structure, kind);
+        self.collect(structure, input.sim_box, Queries::new(structure, input), groups, rule, contents);
+    }
+
+    pub(crate) fn collect(
+        &mut self,
+        structure: &dyn Structure,
+        sim_box: &SimBox,
+        queries: Queries,
+        groups: Range<usize>,
+        rule: Rule,
+        contents: Contents,
+    ) {
+        self.collect_on(Isa::detect(), structure, sim_box, queries, groups, rule, contents);
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "the instruction set is chosen by tests only")]
+    pub(super) fn collect_on(
+        &mut self,
+        isa: Isa,
+        structure: &dyn Structure,
+        sim_box: &SimBox,
+        queries: Queries,
+        groups: Range<usize>,
+        rule: Rule,
+        contents: Contents,
+    ) {
+        isa.run(Scan { structure, sim_box, queries, groups, rule, contents, rows: self });
+    }
+
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.output.particle.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Number of neighbours in all rows.
+    pub fn n_entries(&self) -> usize {
+        self.output.len
+    }
+
+    /// Particle and extent of row `k`.
+    #[inline(always)]
+    pub(crate) fn extent(&self, k: usize) -> (u32, Range<usize>) {
+        let start = if k == 0 { 0 } else { self.output.ends[k - 1] };
+        (self.output.particle[k], start..self.output.ends[k])
+    }
+
+    /// The rows in order. Counted rows have no contents.
+    pub fn iter(&self) -> impl Iterator<Item = Row<'_>> {
+        (0..self.len()).map(|k| self.at(k))
+    }
+
+    /// Row `k`.
+    #[inline(always)]
+    pub(crate) fn at(&self, k: usize) -> Row<'_> {
+        let (particle, extent) = self.extent(k);
+        self.row(particle, extent)
+    }
+
+    #[inline(always)]
+    pub(super) fn row(&self, particle: u32, extent: Range<usize>) -> Row<'_> {
+        let Output { indices, images, r2, contents, .. } = &self.output;
+        let (rows, with_images, with_distances) = match *contents {
+            Contents::Count => (false, false, false),
+            Contents::Rows { images, distances } => (true, images, distances),
+        };
+        let kept = |is_kept: bool| if is_kept { extent.clone() } else { 0..0 };
+        Row {
+            particle,
+            neighbors: &indices[kept(rows)],
+            images: &images[kept(with_images)],
+            r2: &r2[kept(with_distances)],
+        }
+    }
+}
+
+impl Rule {
+    /// The rule that lists by `kind`, or finds each pair once where the structure is not complete.
+    pub(crate) fn for_list(structure: &dyn Structure, kind: ListKind) -> Self {
+        match kind {
+            _ if !structure.complete() => Self::Acting,
+            ListKind::Full => Self::Full,
+            ListKind::Half => Self::Half,
+        }
+    }
+}

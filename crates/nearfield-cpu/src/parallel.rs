@@ -1,0 +1,36 @@
+//! Splitting work over threads.
+
+use crate::Run;
+use rayon::prelude::*;
+use std::{cell::UnsafeCell, ops::Range};
+
+/// Calls `work` for consecutive ranges that cover `0..n`, with a buffer for runs that is reused within a thread.
+pub(crate) fn for_each_chunk(n: usize, chunk: usize, work: impl Fn(Range<usize>, &mut Vec<Run>) + Sync) {
+    (0..n.div_ceil(chunk))
+        .into_par_iter()
+        .for_each_init(Vec::new, |runs, c| work(c * chunk..((c + 1) * chunk).min(n), runs));
+}
+
+/// A slice that several threads write to at indices that never meet.
+pub(crate) struct Scattered<'a, T>(&'a [UnsafeCell<T>]);
+
+// SAFETY: the only access is `write`, whose contract forbids two threads the same index.
+unsafe impl<T: Send> Sync for Scattered<'_, T> {}
+
+impl<'a, T: Copy> Scattered<'a, T> {
+    pub fn new(slice: &'a mut [T]) -> Self {
+        let pointer = std::ptr::from_mut(slice) as *const [UnsafeCell<T>];
+        // SAFETY: UnsafeCell<T> has the layout of T, and the exclusive borrow lasts as long as the result.
+        Self(unsafe { &*pointer })
+    }
+
+    /// Replaces element `i`.
+    ///
+    /// # Safety
+    /// No other thread reads or writes element `i` while this value lives.
+    #[inline(always)]
+    pub unsafe fn write(&self, i: usize, value: T) {
+        // SAFETY: exclusive access to element i is the caller's promise; the index is bounds-checked.
+        unsafe { *self.0[i].get() = value };
+    }
+}

@@ -1,0 +1,70 @@
+//! The engine against the float64 oracle; the full matrix is in `nearfield-conformance`.
+
+use nearfield_core::*;
+use nearfield_cpu::CpuEngine;
+
+fn jittered(n_side: usize, spacing: f32, boundary: Boundary) -> System {
+    let mut seed = 1u32;
+    let mut random = || {
+        seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (seed >> 8) as f32 / (1 << 24) as f32 - 0.5
+    };
+    let mut positions = Vec::new();
+    for i in 0..n_side.pow(3) {
+        let c = [i % n_side, i / n_side % n_side, i / n_side / n_side];
+        positions.push(c.map(|c| (c as f32 + 0.5 + 0.3 * random()) * spacing));
+    }
+    System {
+        sim_box: SimBox::cubic(n_side as f32 * spacing, boundary).unwrap(),
+        particles: Particles::at(positions),
+        radii: Radii::Uniform(2.5),
+        interaction: Interaction::lennard_jones(),
+    }
+}
+
+#[test]
+fn every_method_gives_the_forces_and_energies_of_the_oracle() {
+    for boundary in [Boundary::Periodic, Boundary::Wall] {
+        let system = jittered(9, 1.1, boundary);
+        let oracle = oracle::evaluate(&system);
+        for &method in Method::ALL {
+            for &images in Images::ALL {
+                let mut engine = CpuEngine::new();
+                engine.load(&system, &Plan { images, ..Plan::new(method) }).unwrap();
+                let totals = engine.evaluate(Quantities::ALL).unwrap();
+                assert_eq!(totals.pairs, oracle.pairs, "{method} {images}");
+                let mut results = PerParticle::default();
+                engine.per_particle(&mut results);
+                assert_eq!(results.neighbors, oracle.neighbors, "{method} {images}");
+                let worst = results
+                    .force
+                    .iter()
+                    .zip(&oracle.force)
+                    .zip(&oracle.magnitude)
+                    .map(|((a, b), m)| (0..3).map(|k| (f64::from(a[k]) - b[k]).abs()).fold(0.0, f64::max) / m);
+                let worst = worst.fold(0.0, f64::max);
+                assert!(worst < 1e-5, "{method} {images}: {worst:e}");
+                assert!((totals.potential_energy - oracle.potential_energy).abs() < 1e-6 * oracle.energy_magnitude);
+                assert!((totals.virial - oracle.virial).abs() < 1e-5 * oracle.virial_magnitude);
+            }
+        }
+    }
+}
+
+#[test]
+fn all_exact_methods_run_the_same_trajectory_bit_for_bit() {
+    let system = jittered(8, 1.1, Boundary::Periodic);
+    let mut states = Vec::new();
+    for &method in Method::ALL {
+        let mut engine = CpuEngine::new();
+        engine.load(&system, &Plan { deterministic: true, ..Plan::new(method) }).unwrap();
+        let totals = engine.advance(&Dynamics::nve(0.004), 0, 50, Quantities::ALL).unwrap();
+        let mut particles = Particles::default();
+        engine.snapshot(&mut particles);
+        states.push((method, totals, particles));
+    }
+    for (method, totals, particles) in &states[1..] {
+        assert_eq!(particles, &states[0].2, "{method}");
+        assert_eq!(totals, &states[0].1, "{method}");
+    }
+}

@@ -1,0 +1,93 @@
+//! `auto`: the fastest method that supports the system, by measurement on the device at hand.
+
+use nearfield_core::{Engine, Error, Maintenance, Method, Order, Plan, Quantities, Result, System};
+use serde::Serialize;
+use std::time::{Duration, Instant};
+
+/// How the method was chosen.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Choice {
+    /// The method.
+    pub method: Method,
+    /// Why, in a sentence.
+    pub reason: String,
+    /// Seconds of one force evaluation, of each candidate that was tried.
+    pub measured: Vec<(Method, f64)>,
+}
+
+/// Particles below which all pairs are worth a try.
+const BRUTE_LIMIT: usize = 2000;
+/// A candidate this much slower than the best at its first evaluation is not measured further.
+const HOPELESS: f64 = 3.0;
+/// Evaluations timed, after a first one that also warms buffers.
+const REPETITIONS: usize = 3;
+/// Once a candidate has taken so long, the next ones are only tried if their first evaluation is quicker.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// The method the user chose.
+pub fn chosen(method: Method) -> Choice {
+    Choice { method, reason: "chosen by the user".into(), measured: Vec::new() }
+}
+
+/// Measures one force evaluation, structure included, of every method that supports the system, and picks the
+/// fastest. `plan` gives all settings but the method.
+///
+/// # Errors
+/// As [`Engine::evaluate`]. A start with overlaps that cannot be evaluated without a cap falls back to `cell`.
+pub fn choose(engine: &mut dyn Engine, system: &System, plan: &Plan) -> Result<Choice> {
+    let fallback = |reason: &str| Choice { method: Method::Cell, reason: reason.into(), measured: Vec::new() };
+    if system.particles.is_empty() {
+        return Ok(fallback("nothing to measure"));
+    }
+    let mut measured: Vec<(Method, f64)> = Vec::new();
+    let begin = Instant::now();
+    for &method in [Method::Cell, Method::RtBoxes, Method::RtPerse, Method::RtForces, Method::RtList, Method::Brute].iter() {
+        let too_many = method == Method::Brute && system.particles.len() > BRUTE_LIMIT;
+        let plan = trial_plan(plan, method);
+        if too_many || engine.supports(system, &plan).is_err() {
+            continue;
+        }
+        if begin.elapsed() > PATIENCE && !measured.is_empty() {
+            break;
+        }
+        let best = measured.iter().map(|&(_, seconds)| seconds).fold(f64::INFINITY, f64::min);
+        match measure(engine, system, &plan, best) {
+            Ok(seconds) => measured.push((method, seconds)),
+            Err(Error::Coincident(..) | Error::NonFinite { .. }) => {
+                return Ok(fallback("particles overlap, so evaluations could not be timed; cell is the safe choice"));
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    let (method, seconds) =
+        measured.iter().copied().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((Method::Cell, f64::NAN));
+    let others: Vec<String> =
+        measured.iter().filter(|(m, _)| *m != method).map(|(m, s)| format!("{m} {:.3} ms", s * 1e3)).collect();
+    let reason = format!("fastest of those measured: {:.3} ms a force evaluation ({})", seconds * 1e3, others.join(", "));
+    Ok(Choice { method, reason, measured })
+}
+
+/// Particles do not move between the evaluations of a trial, so each of them must build: a list or a refitted tree
+/// that is as good as new would look cheaper than it is.
+fn trial_plan(plan: &Plan, method: Method) -> Plan {
+    let order = if plan.order == Order::None { Order::None } else { Order::Morton };
+    Plan { method, order, maintenance: Maintenance::Every, skin: 0.0, ..*plan }
+}
+
+fn measure(engine: &mut dyn Engine, system: &System, plan: &Plan, best: f64) -> Result<f64> {
+    engine.load(system, plan)?;
+    let start = Instant::now();
+    engine.evaluate(Quantities::FORCES)?;
+    let first = start.elapsed().as_secs_f64();
+    if first > HOPELESS * best {
+        return Ok(first);
+    }
+    let mut times = Vec::new();
+    for _ in 0..REPETITIONS {
+        let start = Instant::now();
+        engine.evaluate(Quantities::FORCES)?;
+        times.push(start.elapsed().as_secs_f64());
+    }
+    times.sort_by(f64::total_cmp);
+    Ok(times[REPETITIONS / 2])
+}

@@ -1,0 +1,83 @@
+//! What can go wrong, and whose fault it is.
+
+use crate::{config, generate, io::IoError};
+use std::path::PathBuf;
+
+/// Shorthand for results of this crate.
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// Any error of this crate.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The system, the plan or the physics.
+    #[error(transparent)]
+    Core(#[from] nearfield_core::Error),
+    /// A file.
+    #[error(transparent)]
+    Io(#[from] IoError),
+    /// The configuration.
+    #[error(transparent)]
+    Config(#[from] config::Error),
+    /// A generator.
+    #[error(transparent)]
+    Generate(#[from] generate::Error),
+    /// The device cannot be used here.
+    #[error("device {device} is not available: {reason}")]
+    DeviceUnavailable {
+        /// The device asked for.
+        device: String,
+        /// What was looked for.
+        reason: String,
+    },
+    /// An input file without a box where one is needed.
+    #[error("{}: the file gives no box, which {why}; only open boundaries do without", path.display())]
+    NoBox {
+        /// The file.
+        path: PathBuf,
+        /// What needs it.
+        why: &'static str,
+    },
+    /// The particles of an input file do not fit the box or the interaction.
+    #[error("{}: {source}", path.display())]
+    Input {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        source: nearfield_core::Error,
+    },
+    /// `--resume` without a usable checkpoint.
+    #[error("cannot resume from {}: {reason}", path.display())]
+    Resume {
+        /// The checkpoint.
+        path: PathBuf,
+        /// Why not.
+        reason: String,
+    },
+    /// The run was asked to stop.
+    #[error("interrupted at step {step}; continue with --resume")]
+    Interrupted {
+        /// Last finished step, saved in the checkpoint.
+        step: u64,
+    },
+    /// The run failed; what it had written is kept.
+    #[error("{source}{}", checkpoint.map(|step| format!("; the last good checkpoint is of step {step}")).unwrap_or_default())]
+    Failed {
+        /// Why.
+        source: Box<Error>,
+        /// Step of the last checkpoint on disk.
+        checkpoint: Option<u64>,
+    },
+}
+
+impl Error {
+    /// Whether the request was wrong, rather than its execution: exit code 2 instead of 1.
+    pub fn is_request(&self) -> bool {
+        match self {
+            Self::Interrupted { .. } | Self::Failed { .. } => false,
+            Self::Core(error) => !matches!(error, nearfield_core::Error::NonFinite { .. }),
+            Self::Io(IoError::Read { .. }) => false,
+            _ => true,
+        }
+    }
+}

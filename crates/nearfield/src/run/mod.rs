@@ -1,0 +1,176 @@
+//! A run of a configuration file: what `nearfield run` does, for programs.
+//!
+//! The output directory holds `thermo.csv`, the trajectory, `run.json` (what ran and how it went) and
+//! `checkpoint.nearfield`. A directory of an earlier run is renamed, never overwritten.
+
+mod checkpoint;
+mod directory;
+mod record;
+
+pub use checkpoint::Checkpoint;
+pub use record::{Record, Status};
+
+use crate::{
+    Error, Progress, Result, Simulation,
+    config::{Choice, Config},
+    observe::{MeanSquaredDisplacement, Observer, RadialDistribution, ThermoTable, TrajectoryWriter},
+    setup,
+    simulation::next_multiple,
+};
+use nearfield_core::{Method, Plan};
+use std::{ops::ControlFlow, path::PathBuf};
+
+/// File name of the checkpoint.
+pub const CHECKPOINT: &str = "checkpoint.nearfield";
+
+/// A configuration made ready to run.
+pub struct Run {
+    config: Config,
+    simulation: Simulation,
+    observers: Vec<Box<dyn Observer>>,
+    record: Record,
+    /// Step of the checkpoint on disk.
+    saved: Option<u64>,
+    /// Where an earlier run's output went.
+    moved: Option<PathBuf>,
+}
+
+impl Run {
+    /// Sets the system up and prepares the output directory. Nothing is written before everything is checked.
+    ///
+    /// # Errors
+    /// Anything wrong with the request.
+    pub fn new(config: Config) -> Result<Self> {
+        let method = match config.method.name {
+            Choice::Auto => None,
+            Choice::Of(method) => Some(method),
+        };
+        let simulation = simulation(&config, method)?;
+        let moved = directory::prepare(&config.output.directory)?;
+        let record = Record::new(&config, &simulation);
+        Ok(Self { observers: observers(&config), config, simulation, record, saved: None, moved })
+    }
+
+    /// Continues the run whose checkpoint lies in the output directory. Only the number of steps, the outputs and
+    /// the device may differ from the run before; the method stays that of the checkpoint.
+    ///
+    /// # Errors
+    /// [`Error::Resume`], and as [`Run::new`].
+    pub fn resume(config: Config) -> Result<Self> {
+        let path = config.output.directory.join(CHECKPOINT);
+        let checkpoint = Checkpoint::read(&path)?;
+        checkpoint.check(&config).map_err(|reason| Error::Resume { path: path.clone(), reason })?;
+        let mut simulation = simulation(&config, Some(checkpoint.method))?;
+        simulation.restore(&checkpoint)?;
+        let mut observers = observers(&config);
+        for observer in &mut observers {
+            if let Some(saved) = checkpoint.observers.get(observer.name()) {
+                observer.restore(saved)?;
+            }
+        }
+        let record = Record::new(&config, &simulation).resumed(checkpoint.step, checkpoint.report.clone());
+        Ok(Self { config, simulation, observers, record, saved: Some(checkpoint.step), moved: None })
+    }
+
+    /// The simulation.
+    pub fn simulation(&self) -> &Simulation {
+        &self.simulation
+    }
+
+    /// Where the output of an earlier run was moved to, if there was one.
+    pub fn moved(&self) -> Option<&PathBuf> {
+        self.moved.as_ref()
+    }
+
+    /// Runs to the last step and gives the record, which is also in `run.json`.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`] when `progress` breaks off, after writing a checkpoint; [`Error::Failed`] with the step
+    /// of the last good checkpoint otherwise.
+    pub fn execute(mut self, progress: &mut dyn FnMut(Progress) -> ControlFlow<()>) -> Result<Record> {
+        self.write_record(Status::Running)?;
+        let outcome = self.run_segments(progress);
+        match outcome {
+            Ok(()) => {
+                self.write_record(Status::Finished)?;
+                Ok(self.record)
+            }
+            Err(Error::Interrupted { step }) => {
+                self.save()?;
+                self.write_record(Status::Interrupted)?;
+                Err(Error::Interrupted { step })
+            }
+            Err(source) => {
+                self.write_record(Status::Failed(source.to_string()))?;
+                Err(Error::Failed { source: Box::new(source), checkpoint: self.saved })
+            }
+        }
+    }
+
+    fn run_segments(&mut self, progress: &mut dyn FnMut(Progress) -> ControlFlow<()>) -> Result<()> {
+        let last = self.config.dynamics.steps;
+        let every = self.config.output.checkpoint_every;
+        if self.simulation.step() == 0 {
+            self.run_to(0, last, progress)?;
+        }
+        while self.simulation.step() < last {
+            let end = next_multiple(self.simulation.step(), every).unwrap_or(last).min(last);
+            self.run_to(end, last, progress)?;
+            self.save()?;
+            self.write_record(Status::Running)?;
+        }
+        Ok(())
+    }
+
+    fn run_to(
+        &mut self,
+        end: u64,
+        last_step: u64,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<()> {
+        self.simulation.run(end, &mut self.observers, &mut |p| progress(Progress { last_step, ..p }))
+    }
+
+    fn save(&mut self) -> Result<()> {
+        self.record.thermo(self.simulation.thermo()?);
+        let mut checkpoint = self.simulation.checkpoint()?;
+        checkpoint.config = self.config.to_toml()?;
+        checkpoint.report = self.record.report_with(self.simulation.report());
+        for observer in &mut self.observers {
+            checkpoint.observers.insert(observer.name().into(), observer.save()?);
+        }
+        checkpoint.write(&self.config.output.directory.join(CHECKPOINT))?;
+        self.saved = Some(checkpoint.step);
+        Ok(())
+    }
+
+    fn write_record(&mut self, status: Status) -> Result<()> {
+        self.record.update(&self.simulation, status);
+        self.record.write(&self.config.output.directory.join("run.json"))
+    }
+}
+
+fn simulation(config: &Config, method: Option<Method>) -> Result<Simulation> {
+    let plan: Plan = config.plan(method.unwrap_or(Method::Cell));
+    let builder = Simulation::builder(setup::system(config)?)
+        .dynamics(config.dynamics())
+        .plan(plan)
+        .device(config.method.device)
+        .tail_correction(config.interaction.tail_correction);
+    match method {
+        Some(method) => builder.method(method).build(),
+        None => builder.build(),
+    }
+}
+
+fn observers(config: &Config) -> Vec<Box<dyn Observer>> {
+    let output = &config.output;
+    let path = |name: &str| output.directory.join(name);
+    let trajectory = output.directory.join(&output.trajectory);
+    vec![
+        Box::new(ThermoTable::new(&path("thermo.csv"), output.thermo_every)),
+        Box::new(TrajectoryWriter::new(&trajectory, output.trajectory_every, output.velocities)),
+        Box::new(RadialDistribution::new(&path("rdf.csv"), output.rdf_every, output.rdf_bins)),
+        Box::new(MeanSquaredDisplacement::new(&path("msd.csv"), output.msd_every)),
+    ]
+}

@@ -1,0 +1,91 @@
+//! From configurations and files to a validated system.
+
+use crate::{
+    Error, Result,
+    config::{Config, Source},
+    io::{self, Bounds, Configuration},
+};
+use nearfield_core::{Boundary, Particles, Radii, SimBox, System, Vec3s};
+use std::path::Path;
+
+/// The validated, wrapped system of a configuration.
+///
+/// # Errors
+/// Anything wrong with the input, naming the particle, line or key.
+pub fn system(config: &Config) -> Result<System> {
+    let mut system = match config.source()? {
+        Source::Input(path) => return file_system(config, &config.folder.join(path), Some(config.boundary.axes())),
+        Source::Generate(_) => {
+            let (sim_box, particles, radii) = config.generate()?;
+            System { sim_box, particles, radii, interaction: config.interaction()? }
+        }
+    };
+    system.validate()?;
+    system.wrap();
+    Ok(system)
+}
+
+/// The validated, wrapped system of an input file, with the interaction of a configuration. Without boundaries, the
+/// file's own are taken; where it has a box but does not say, periodic ones; where it has none, open ones. `-` reads
+/// standard input.
+///
+/// # Errors
+/// As [`system`].
+pub fn file_system(config: &Config, path: &Path, boundary: Option<[Boundary; 3]>) -> Result<System> {
+    let configuration = io::read(path, &io::ReadOptions::default())?;
+    let boundary = boundary.unwrap_or_else(|| match configuration.bounds {
+        Some(bounds) => bounds
+            .periodic
+            .map_or([Boundary::Periodic; 3], |axes| axes.map(|p| if p { Boundary::Periodic } else { Boundary::Open })),
+        None => [Boundary::Open; 3],
+    });
+    let mut system = assemble(config, path, configuration, boundary)?;
+    system.validate().map_err(|source| Error::Input { path: path.to_owned(), source })?;
+    system.wrap();
+    Ok(system)
+}
+
+fn assemble(
+    config: &Config,
+    path: &Path,
+    configuration: Configuration,
+    boundary: [Boundary; 3],
+) -> Result<System> {
+    let n = configuration.len();
+    let sim_box = match configuration.bounds {
+        Some(Bounds { lo, hi, .. }) => SimBox::new(lo, hi, boundary)?,
+        None if boundary == [Boundary::Open; 3] => bounding_box(&configuration.position)?,
+        None => {
+            return Err(Error::NoBox { path: path.to_owned(), why: "periodic and wall boundaries need" });
+        }
+    };
+    let kinds = config.interaction.match_species(&configuration.species.names)?;
+    let mut interaction = config.interaction()?;
+    if let Some(masses) = &configuration.mass {
+        for (&kind, &mass) in kinds.iter().zip(masses) {
+            interaction.types[kind as usize].mass = mass;
+        }
+    }
+    let particles = Particles {
+        velocity: configuration.velocity.unwrap_or_else(|| Vec3s::zeros(n)),
+        kind: configuration.species.of.iter().map(|&species| kinds[species as usize]).collect(),
+        image: configuration.image.unwrap_or_else(|| vec![[0; 3]; n]),
+        position: configuration.position,
+    };
+    let radii = match configuration.radius {
+        Some(radii) => Radii::PerParticle(radii),
+        None => Radii::Uniform(config.interaction.cutoff as f32),
+    };
+    Ok(System { sim_box, particles, radii, interaction })
+}
+
+/// The box of particles in open space: their bounds, a little wider. It only informs.
+fn bounding_box(position: &Vec3s) -> Result<SimBox> {
+    let bounds = |values: &[f32]| {
+        let finite = values.iter().copied().filter(|v| v.is_finite());
+        let (lo, hi) = finite.fold((f32::INFINITY, f32::NEG_INFINITY), |(lo, hi), v| (lo.min(v), hi.max(v)));
+        if lo > hi { (0.0, 1.0) } else { (lo - 0.5 - 0.01 * lo.abs(), hi + 0.5 + 0.01 * hi.abs()) }
+    };
+    let axes = position.axes().map(|axis| bounds(axis));
+    Ok(SimBox::new(axes.map(|(lo, _)| lo), axes.map(|(_, hi)| hi), [Boundary::Open; 3])?)
+}

@@ -1,0 +1,331 @@
+//! A simulation in a program: a system on an engine, moved step by step, watched by observers.
+
+use crate::{
+    Device, Error, Result, Thermo,
+    auto::{self, Choice},
+    engine,
+    observe::{Observer, Sample},
+    run::Checkpoint,
+};
+use nearfield_core::{
+    Dynamics, Engine, Method, PerParticle, Plan, Quantities, Report, System, Totals, interaction::TailCorrection,
+};
+use std::{
+    ops::ControlFlow,
+    time::{Duration, Instant},
+};
+
+/// Settings of a [`Simulation`] that have defaults.
+#[derive(Clone, Debug)]
+pub struct SimulationBuilder {
+    system: System,
+    dynamics: Dynamics,
+    method: Option<Method>,
+    plan: Plan,
+    device: Device,
+    tail_correction: bool,
+    record_history: bool,
+}
+
+impl SimulationBuilder {
+    /// The equations of motion; NVE with a time step of 0.005 by default.
+    pub fn dynamics(mut self, dynamics: Dynamics) -> Self {
+        self.dynamics = dynamics;
+        self
+    }
+
+    /// The method; by default the fastest one, measured.
+    pub fn method(mut self, method: Method) -> Self {
+        self.method = Some(method);
+        self
+    }
+
+    /// Everything about how to compute but the method.
+    pub fn plan(mut self, plan: Plan) -> Self {
+        self.plan = plan;
+        self
+    }
+
+    /// The device; by default the fastest one.
+    pub fn device(mut self, device: Device) -> Self {
+        self.device = device;
+        self
+    }
+
+    /// Adds the long-range part of a homogeneous Lennard-Jones fluid to energy and pressure where it is defined
+    /// ([`System::tail_correction`]).
+    pub fn tail_correction(mut self, on: bool) -> Self {
+        self.tail_correction = on;
+        self
+    }
+
+    /// Keeps the structure and query time of each evaluation in [`Report::history`].
+    pub fn record_history(mut self, on: bool) -> Self {
+        self.record_history = on;
+        self
+    }
+
+    /// Validates the system and loads it.
+    ///
+    /// # Errors
+    /// An invalid or empty system, an unavailable device, a method that does not support the system.
+    pub fn build(mut self) -> Result<Simulation> {
+        self.system.validate()?;
+        self.system.wrap();
+        if self.system.particles.is_empty() {
+            return Err(nearfield_core::Error::Empty.into());
+        }
+        self.dynamics.validate()?;
+        let mut engine = engine(self.device)?;
+        let choice = match self.method {
+            Some(method) => auto::chosen(method),
+            None => auto::choose(&mut *engine, &self.system, &self.plan)?,
+        };
+        let plan = Plan { method: choice.method, ..self.plan };
+        engine.record_history(self.record_history);
+        engine.load(&self.system, &plan)?;
+        let tail =
+            if self.tail_correction { self.system.tail_correction().unwrap_or_default() } else { Default::default() };
+        Ok(Simulation {
+            engine,
+            system: self.system,
+            dynamics: self.dynamics,
+            plan,
+            choice,
+            tail,
+            step: 0,
+            in_step: true,
+            thermo: None,
+            earlier: Report::default(),
+        })
+    }
+}
+
+/// A running simulation.
+///
+/// ```
+/// use nearfield::{Boundary, Dynamics, Interaction, Radii, Simulation, System, generate};
+/// let spec = generate::Generate { n: 500, density: Some(0.8442), temperature: 1.44, ..Default::default() };
+/// let start = spec.build([Boundary::Periodic; 3], 1.0)?;
+/// let system = System {
+///     sim_box: start.sim_box,
+///     particles: start.particles,
+///     radii: Radii::Uniform(2.5),
+///     interaction: Interaction::lennard_jones(),
+/// };
+/// let mut simulation = Simulation::builder(system).dynamics(Dynamics::nve(0.004)).build()?;
+/// let before = simulation.thermo()?.total_energy;
+/// let after = simulation.advance(100)?.total_energy;
+/// assert!((after - before).abs() < 0.01 * before.abs());
+/// # Ok::<(), nearfield::Error>(())
+/// ```
+pub struct Simulation {
+    engine: Box<dyn Engine>,
+    /// The particles are up to date only while `in_step`.
+    system: System,
+    in_step: bool,
+    dynamics: Dynamics,
+    plan: Plan,
+    choice: Choice,
+    tail: TailCorrection,
+    step: u64,
+    thermo: Option<Thermo>,
+    /// What was done before the engine was last loaded.
+    earlier: Report,
+}
+
+/// How far a run has come.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// Steps done.
+    pub step: u64,
+    /// The step at which the run ends.
+    pub last_step: u64,
+    /// The newest thermodynamic state.
+    pub thermo: Option<Thermo>,
+}
+
+/// Wall time between reports of progress.
+const PROGRESS_INTERVAL: Duration = Duration::from_millis(100);
+
+impl Simulation {
+    /// A simulation of `system` with every setting at its default.
+    pub fn builder(system: System) -> SimulationBuilder {
+        SimulationBuilder {
+            system,
+            dynamics: Dynamics::nve(0.005),
+            method: None,
+            plan: Plan::new(Method::Cell),
+            device: Device::Auto,
+            tail_correction: false,
+            record_history: false,
+        }
+    }
+
+    /// The thermodynamic state at the present step.
+    ///
+    /// # Errors
+    /// As [`Simulation::advance`].
+    pub fn thermo(&mut self) -> Result<Thermo> {
+        match self.thermo {
+            Some(thermo) if thermo.step == self.step => Ok(thermo),
+            _ => self.advance(0),
+        }
+    }
+
+    /// Moves by `steps` steps.
+    ///
+    /// # Errors
+    /// Coincident particles, or a run that has blown up; the state is then not to be used.
+    pub fn advance(&mut self, steps: u64) -> Result<Thermo> {
+        let totals = self.engine.advance(&self.dynamics, self.step, steps, Quantities::ALL)?;
+        self.moved(steps);
+        let thermo = self.thermo_of(&totals);
+        self.thermo = Some(thermo);
+        Ok(thermo)
+    }
+
+    fn moved(&mut self, steps: u64) {
+        self.step += steps;
+        self.in_step &= steps == 0;
+    }
+
+    fn thermo_of(&self, totals: &Totals) -> Thermo {
+        let time = self.step as f64 * f64::from(self.dynamics.dt);
+        Thermo::new(totals, self.system.particles.len(), self.system.sim_box.volume(), self.tail, self.step, time)
+    }
+
+    /// Runs to `last_step`, calling each observer at the steps it asks for (the present one included only at step 0)
+    /// and `progress` about ten times a second, until that breaks off.
+    ///
+    /// # Errors
+    /// As [`Simulation::advance`], those of observers, and [`Error::Interrupted`] when `progress` broke off.
+    pub fn run(
+        &mut self,
+        last_step: u64,
+        observers: &mut [Box<dyn Observer>],
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<()> {
+        if self.step == 0 {
+            self.thermo()?;
+            self.observe(observers)?;
+        }
+        let mut chunk = 1;
+        while self.step < last_step {
+            let next_event = observers.iter().filter_map(|o| next_multiple(self.step, o.every())).min();
+            let event = next_event.unwrap_or(last_step).min(last_step);
+            let steps = chunk.min(event - self.step);
+            let start = Instant::now();
+            if self.step + steps == event {
+                self.advance(steps)?;
+                self.observe(observers)?;
+            } else {
+                self.engine.advance(&self.dynamics, self.step, steps, Quantities::FORCES)?;
+                self.moved(steps);
+            }
+            // As many steps as fit the interval, changing by a factor of two at most.
+            let fit = steps as f64 * PROGRESS_INTERVAL.as_secs_f64() / start.elapsed().as_secs_f64().max(1e-9);
+            chunk = (fit as u64).clamp(chunk / 2, chunk * 2).max(1);
+            if progress(Progress { step: self.step, last_step, thermo: self.thermo }).is_break() {
+                return Err(Error::Interrupted { step: self.step });
+            }
+        }
+        Ok(())
+    }
+
+    fn observe(&mut self, observers: &mut [Box<dyn Observer>]) -> Result<()> {
+        let thermo = self.thermo()?;
+        for observer in observers {
+            let every = observer.every();
+            if every > 0 && self.step.is_multiple_of(every) {
+                observer.observe(&mut Sample { simulation: self, thermo })?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The system at the present step.
+    pub fn system(&mut self) -> &System {
+        if !self.in_step {
+            self.engine.snapshot(&mut self.system.particles);
+            self.in_step = true;
+        }
+        &self.system
+    }
+
+    /// Forces, energies and neighbour counts at the present step.
+    ///
+    /// # Errors
+    /// As [`Simulation::advance`].
+    pub fn per_particle(&mut self) -> Result<PerParticle> {
+        self.thermo()?;
+        let mut out = PerParticle::default();
+        self.engine.per_particle(&mut out);
+        Ok(out)
+    }
+
+    /// Number of particles.
+    pub fn n_particles(&self) -> usize {
+        self.system.particles.len()
+    }
+
+    /// Steps done.
+    pub fn step(&self) -> u64 {
+        self.step
+    }
+
+    /// How it computes.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// Why it computes so.
+    pub fn choice(&self) -> &Choice {
+        &self.choice
+    }
+
+    /// Name of the device.
+    pub fn device(&self) -> String {
+        self.engine.device()
+    }
+
+    /// What was done so far.
+    pub fn report(&self) -> Report {
+        self.earlier.clone().followed_by(self.engine.report())
+    }
+
+    /// The state to continue from. The running simulation reloads it too: sums in f32 depend on the memory order that
+    /// grew since the start, so that only then both continue bit for bit alike.
+    ///
+    /// # Errors
+    /// When the engine cannot be loaded.
+    pub fn checkpoint(&mut self) -> Result<Checkpoint> {
+        let (method, step) = (self.plan.method, self.step);
+        let checkpoint = Checkpoint::new(self.system(), method, step);
+        self.reload()?;
+        Ok(checkpoint)
+    }
+
+    /// Continues from a checkpoint instead of the initial state.
+    ///
+    /// # Errors
+    /// When the engine cannot be loaded.
+    pub fn restore(&mut self, checkpoint: &Checkpoint) -> Result<()> {
+        checkpoint.apply(&mut self.system);
+        self.step = checkpoint.step;
+        self.in_step = true;
+        self.reload()
+    }
+
+    fn reload(&mut self) -> Result<()> {
+        self.earlier = self.report();
+        self.engine.load(&self.system, &self.plan)?;
+        self.thermo = None;
+        Ok(())
+    }
+}
+
+/// The first multiple of `every` after `step`; `None` when `every` is 0.
+pub(crate) fn next_multiple(step: u64, every: u64) -> Option<u64> {
+    (every > 0).then(|| (step / every + 1) * every)
+}
