@@ -81,19 +81,11 @@ impl WithSimd for CountGroup<'_> {
     type Output = (u64, u64);
 
     #[inline(always)]
-    #[expect(clippy::needless_range_loop, reason = "kernels index: closures are not sure to be inlined")]
     fn with_simd<S: Simd>(self, _: S) -> (u64, u64) {
         let Self { scene, bvh, runs, slots: queries } = self;
         let slots = bvh.slots();
         let queries = queries.start..queries.end.min(scene.position[0].len());
-        let mut group = GroupBox { lo: [f32::INFINITY; 3], hi: [f32::NEG_INFINITY; 3], radius: 0.0 };
-        for slot in queries.clone() {
-            let at = slots.at(slot);
-            for axis in 0..3 {
-                group.lo[axis] = group.lo[axis].min(at[axis]);
-                group.hi[axis] = group.hi[axis].max(at[axis]);
-            }
-        }
+        let group = GroupBox::around(slots, queries.clone(), scene.cutoff).expect("groups hold particles");
         runs.clear();
         bvh.runs(&group, runs);
         let (mut found, mut tested) = ([0u32; LANES], 0);

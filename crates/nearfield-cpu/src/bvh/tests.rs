@@ -74,13 +74,7 @@ fn traced(bvh: &Bvh, case: &Case) -> Vec<Pair> {
     let (slots, mut runs, mut pairs) = (bvh.slots(), Vec::new(), Vec::new());
     for g in 0..bvh.n_groups() {
         let real: Vec<usize> = bvh.group(g).filter(|&slot| slots.particle[slot] != u32::MAX).collect();
-        let mut group = GroupBox { lo: [f32::INFINITY; 3], hi: [f32::NEG_INFINITY; 3], radius: 0.0 };
-        for &slot in &real {
-            for axis in 0..3 {
-                group.lo[axis] = group.lo[axis].min(slots.at(slot)[axis]);
-                group.hi[axis] = group.hi[axis].max(slots.at(slot)[axis]);
-            }
-        }
+        let group = GroupBox::around(slots, bvh.group(g), case.cutoff).expect("groups hold particles");
         runs.clear();
         bvh.runs(&group, &mut runs);
         assert_proposed_once(&runs, bvh, &case.name);
@@ -334,4 +328,14 @@ fn pairs_at_the_edge_of_range_across_a_face_survive_rounding() {
         }
     }
     assert!(accepted > 10_000, "only {accepted} of the trials are in range");
+}
+
+#[test]
+fn the_box_of_a_group_leaves_padding_out() {
+    let case = periodic_case(17, 16);
+    let mut bvh = Bvh::new(Images::Gamma);
+    case.with_input(|input| bvh.build(input));
+    let bounds = GroupBox::around(bvh.slots(), bvh.group(1), 1.0).unwrap();
+    let last = case.positions[bvh.slots().particle[16] as usize];
+    assert_eq!((bounds.lo, bounds.hi), (last, last));
 }
