@@ -92,7 +92,7 @@ named_enum! {
     Order, "order" {
         /// As given.
         None = "none",
-        /// Along a Z-order curve.
+        /// Along a space-filling curve, on the CPU Hilbert's.
         Morton = "morton",
         /// By grid cell.
         Cell = "cell",

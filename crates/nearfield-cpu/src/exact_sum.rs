@@ -8,10 +8,11 @@ const BITS: i32 = 90;
 /// The sum of `term(0..n)`: each term is rounded to a multiple of 2^-90 of the largest one's binade, and the rounded
 /// terms are summed exactly. NaN or infinite terms give NaN.
 pub(crate) fn exact_sum(n: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
-    let largest = (0..n).into_par_iter().with_min_len(4096).map(|i| term(i).abs()).reduce(
-        || 0.0,
-        |a, b| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) },
-    );
+    let largest = (0..n)
+        .into_par_iter()
+        .with_min_len(4096)
+        .map(|i| term(i).abs())
+        .reduce(|| 0.0, |a, b| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) });
     if largest == 0.0 {
         return 0.0;
     }
@@ -22,8 +23,7 @@ pub(crate) fn exact_sum(n: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
     let exponent = BITS - largest.log2().ceil() as i32;
     let (half, rest) = ((exponent / 2), exponent - exponent / 2);
     let (up, down) = (2f64.powi(half), 2f64.powi(rest));
-    let total: i128 =
-        (0..n).into_par_iter().with_min_len(4096).map(|i| (term(i) * up * down) as i128).sum();
+    let total: i128 = (0..n).into_par_iter().with_min_len(4096).map(|i| (term(i) * up * down) as i128).sum();
     total as f64 / up / down
 }
 

@@ -33,7 +33,10 @@ impl GroupBox {
     pub fn around(slots: &Slots, group: Range<usize>, uniform: f32) -> Option<Self> {
         let mut bounds = Self { lo: [f32::INFINITY; 3], hi: [f32::NEG_INFINITY; 3], radius: 0.0 };
         for slot in group.clone() {
-            // Comparisons with the NaN of padding leave the bounds alone.
+            // Padding is far away: with it, the last group would be proposed everything.
+            if slots.particle[slot] == u32::MAX {
+                continue;
+            }
             for (axis, x) in slots.at(slot).into_iter().enumerate() {
                 bounds.lo[axis] = bounds.lo[axis].min(x);
                 bounds.hi[axis] = bounds.hi[axis].max(x);

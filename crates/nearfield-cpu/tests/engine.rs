@@ -36,9 +36,12 @@ fn every_method_gives_the_forces_and_energies_of_the_oracle() {
                 let mut results = PerParticle::default();
                 engine.per_particle(&mut results);
                 assert_eq!(results.neighbors, oracle.neighbors, "{method} {images}");
-                let worst = results.force.iter().zip(&oracle.force).zip(&oracle.magnitude).map(|((a, b), m)| {
-                    (0..3).map(|k| (f64::from(a[k]) - b[k]).abs()).fold(0.0, f64::max) / m
-                });
+                let worst = results
+                    .force
+                    .iter()
+                    .zip(&oracle.force)
+                    .zip(&oracle.magnitude)
+                    .map(|((a, b), m)| (0..3).map(|k| (f64::from(a[k]) - b[k]).abs()).fold(0.0, f64::max) / m);
                 let worst = worst.fold(0.0, f64::max);
                 assert!(worst < 1e-5, "{method} {images}: {worst:e}");
                 assert!((totals.potential_energy - oracle.potential_energy).abs() < 1e-6 * oracle.energy_magnitude);

@@ -5,9 +5,10 @@
 //! axis, the rest of which the predicate refuses. The radius of the *query* plays no part: a pair with
 //! `r_j <= d < r_i` is found from the side of j alone.
 
+mod hilbert;
 mod images;
-mod morton;
 mod node;
+mod order;
 mod sort;
 #[cfg(test)]
 mod tests;
@@ -16,9 +17,9 @@ mod validate;
 
 use crate::{GroupBox, Input, InputRadii, LANES, Run, Slots, Structure};
 use images::{Scene, Views};
-pub(crate) use morton::MortonOrder;
 use nearfield_core::{Images, SimBox, predicate::conservative_range};
 use node::Aabb;
+pub(crate) use order::CurveOrder;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -34,7 +35,7 @@ pub enum Refit {
     NeedsBuild,
 }
 
-/// An implicit 16-wide tree over particles in Morton order, traced by groups of the 16 points of a leaf.
+/// An implicit 16-wide tree over particles along a Hilbert curve, traced by groups of the 16 points of a leaf.
 ///
 /// As a [`Structure`] it proposes, for each query point p of a group, every slot j and image with `d(p, j) < r_j`;
 /// [`GroupBox::radius`] is ignored. Query points are wrapped into the box on periodic axes. Consumers that need
@@ -57,7 +58,7 @@ pub enum Refit {
 #[derive(Clone, Debug)]
 pub struct Bvh {
     arch: Arch,
-    order: MortonOrder,
+    order: CurveOrder,
     slots: Slots,
     tree: Tree,
     views: Views,
@@ -76,7 +77,7 @@ impl Bvh {
     pub fn new(images: Images) -> Self {
         Self {
             arch: Arch::new(),
-            order: MortonOrder::default(),
+            order: CurveOrder::default(),
             slots: Slots::default(),
             tree: Tree::default(),
             views: Views::new(images),
@@ -121,7 +122,7 @@ impl Bvh {
         }
         self.fit(input);
         match self.views.ghosts() {
-            Some(ghosts) if !ghosts.suffice(&self.slots, input) => Refit::NeedsBuild,
+            Some(ghosts) if !ghosts.suffice(&self.tree, &self.slots, input) => Refit::NeedsBuild,
             _ => Refit::Done,
         }
     }
@@ -141,7 +142,7 @@ impl Bvh {
     fn fit(&mut self, input: &Input) {
         let (radii, largest): (&[f32], f32) = match input.radii {
             InputRadii::Uniform(r) => (&[], r),
-            InputRadii::PerParticle(radii) => (radii, morton::range(radii).1),
+            InputRadii::PerParticle(radii) => (radii, order::range(radii).1),
         };
         gather(&mut self.slots.radius, &self.slots.particle, radii, 0.0);
         self.uniform_radius = matches!(input.radii, InputRadii::Uniform(_)).then_some(largest);

@@ -1,6 +1,6 @@
 //! Sixteen boxes as a structure of arrays, so that one SIMD compare per face tests them all.
 //!
-//! Kernels are plain loops that vectorise where they are inlined under a wider instruction set. They avoid closures
+//! Kernels of the tree are plain indexed loops that vectorise where they are inlined under a wider instruction set. They avoid closures
 //! and iterator adapters, which the compiler does not promise to inline there.
 
 use crate::LANES;
@@ -17,6 +17,7 @@ impl Aabb {
     pub const EMPTY: Self = Self { lo: [f32::INFINITY; 3], hi: [f32::NEG_INFINITY; 3] };
 
     #[inline(always)]
+    #[expect(clippy::needless_range_loop, reason = "kernels index")]
     pub fn translated(mut self, by: [f32; 3]) -> Self {
         for axis in 0..3 {
             self.lo[axis] += by[axis];

@@ -197,8 +197,11 @@ impl WithSimd for FitLeaves<'_> {
                 let coordinates = self.input.position[axis];
                 for (out, &particle) in out.iter_mut().zip(particle) {
                     // Padding is the particle `u32::MAX`, which does not exist.
-                    *out =
-                        if (particle as usize) < coordinates.len() { coordinates[particle as usize] } else { Slots::FAR };
+                    *out = if (particle as usize) < coordinates.len() {
+                        coordinates[particle as usize]
+                    } else {
+                        Slots::FAR
+                    };
                 }
                 let (mut lo, mut hi) = ([f32::INFINITY; LANES], [f32::NEG_INFINITY; LANES]);
                 for slot in 0..LANES {

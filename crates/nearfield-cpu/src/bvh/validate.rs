@@ -1,8 +1,8 @@
 //! The promises of a tree, checked one by one.
 
-use crate::Slots;
 use super::{Bvh, node::Aabb, tree::half_width};
 use crate::LANES;
+use crate::Slots;
 
 impl Bvh {
     /// Checks what tracing relies on: every particle in exactly one real slot, padding as promised, every slot's box

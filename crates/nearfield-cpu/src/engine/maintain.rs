@@ -1,6 +1,6 @@
 //! Keeping the structure in step with the particles: build, refit, and whose word decides.
 
-use crate::{Bvh, Brute, Grid, Input, Refit, Structure};
+use crate::{Brute, Bvh, Grid, Input, Refit, Structure};
 use nearfield_core::{
     Method, Plan, Report,
     engine::StepCost,

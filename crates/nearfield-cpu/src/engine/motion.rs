@@ -55,7 +55,11 @@ impl Reference {
     pub fn crossings(&self, state: &State, out: &mut Vec<[i8; 3]>) {
         out.clear();
         out.extend(
-            state.image.iter().zip(&self.image).map(|(now, then)| [0, 1, 2].map(|a| now[a].wrapping_sub(then[a]) as i8)),
+            state
+                .image
+                .iter()
+                .zip(&self.image)
+                .map(|(now, then)| [0, 1, 2].map(|a| now[a].wrapping_sub(then[a]) as i8)),
         );
     }
 

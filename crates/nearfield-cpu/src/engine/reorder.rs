@@ -1,9 +1,9 @@
 //! Memory order: particles that are near in space are kept near in memory.
 
 use super::state::State;
-use crate::{Grid, Structure, bvh::MortonOrder, physics::Physics};
-use rayon::prelude::*;
+use crate::{Grid, Structure, bvh::CurveOrder, physics::Physics};
 use nearfield_core::Order;
+use rayon::prelude::*;
 
 /// Evaluations between reorderings: sorting costs a few evaluations' time, and locality decays slowly.
 pub(super) const INTERVAL: u64 = 100;
@@ -13,7 +13,7 @@ pub(super) fn order(order: Order, state: &State, physics: &Physics) -> Option<Ve
     let input = state.input(physics, state.radii(physics));
     match order {
         Order::None => None,
-        Order::Morton => Some(MortonOrder::default().sort(&input).collect()),
+        Order::Morton => Some(CurveOrder::default().sort(&input).collect()),
         Order::Cell => {
             let mut grid = Grid::default();
             grid.build(&input);

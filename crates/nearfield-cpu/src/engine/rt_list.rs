@@ -58,7 +58,13 @@ impl StoredList {
         Self {
             skin: if plan.method.uses_list() { plan.skin.min(room).max(0.0) } else { 0.0 },
             valid: false,
-            list: NeighborList { kind: ListKind::Full, offsets: vec![0], indices: vec![], shifts: None, distances: None },
+            list: NeighborList {
+                kind: ListKind::Full,
+                offsets: vec![0],
+                indices: vec![],
+                shifts: None,
+                distances: None,
+            },
             builder: ListBuilder::default(),
             reference: Reference::default(),
             crossings: Vec::new(),

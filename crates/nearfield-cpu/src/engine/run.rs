@@ -130,8 +130,7 @@ impl State {
         chunks.for_each(|(c, ((((x, y), z), ((vx, vy), vz)), image))| {
             for k in 0..x.len() {
                 let i = c * CHUNK + k;
-                let mut p =
-                    Moving { position: [x[k], y[k], z[k]], velocity: [vx[k], vy[k], vz[k]], image: image[k] };
+                let mut p = Moving { position: [x[k], y[k], z[k]], velocity: [vx[k], vy[k], vz[k]], image: image[k] };
                 change(i, &mut p, kind.get(i).copied().unwrap_or(0), id[i]);
                 [x[k], y[k], z[k]] = p.position;
                 [vx[k], vy[k], vz[k]] = p.velocity;

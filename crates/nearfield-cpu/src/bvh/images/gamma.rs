@@ -25,6 +25,7 @@ impl Gamma {
 
     /// The images to which `query` sends rays, as bits.
     #[inline(always)]
+    #[expect(clippy::needless_range_loop, reason = "kernels index, see node.rs")]
     pub fn visible(&self, query: &Aabb) -> u32 {
         // For each axis, whether the query is near the lower face, anywhere, near the upper face.
         let mut near = [[false, true, false]; 3];

@@ -5,7 +5,9 @@
 //! may also be wrapped to the other side, where it needs the opposite images: those stand by from the start, in
 //! leaves of their own, because until then they lie a box length away from the ghosts in use.
 
-use crate::{Input, InputRadii, LANES, Slots, bvh::tree::half_width};
+use super::Aabb;
+use crate::bvh::tree::{Tree, half_width};
+use crate::{Input, InputRadii, LANES, Slots};
 use nearfield_core::{SimBox, predicate::conservative_range};
 use rayon::prelude::*;
 
@@ -19,8 +21,18 @@ pub(in crate::bvh) struct Ghosts {
     faces: Vec<Faces>,
     /// Image of each ghost leaf.
     leaf_images: Vec<[i8; 3]>,
-    /// Particles to mirror, by image and readiness.
-    lists: Vec<Vec<u32>>,
+    /// Scratch: the particles that have ghosts.
+    near_faces: Vec<NearFaces>,
+    /// Scratch: for each image, the particles mirrored there whose ghost is in use, and stands by.
+    lists: Vec<[Vec<u32>; 2]>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct NearFaces {
+    particle: u32,
+    /// The faces for which it has ghosts, and those of them that it reaches already.
+    faces: Faces,
+    in_use: Faces,
 }
 
 /// A set of faces, two bits an axis: bit `2 axis` is the lower face, seen again in image +1, bit `2 axis + 1` the
@@ -78,48 +90,61 @@ impl Ghosts {
 
         self.faces.resize(slots.particle.len(), Faces::default());
         self.faces.par_iter_mut().zip(&slots.particle).with_min_len(4096).for_each(|(faces, &particle)| {
-            *faces = if particle == u32::MAX {
-                Faces::default()
-            } else {
-                let wrappable = Faces::within(sim_box, input.at(particle as usize), slack + margin);
-                faces_in_use(particle).union(wrappable.with_opposites())
-            };
-        });
-
-        let images = &sim_box.images()[1..];
-        self.lists.resize(2 * images.len(), Vec::new());
-        self.lists.iter_mut().for_each(Vec::clear);
-        for (&faces, &particle) in self.faces.iter().zip(&slots.particle) {
-            if faces == Faces::default() {
-                continue;
-            }
-            let in_use = faces_in_use(particle);
-            for (index, &image) in images.iter().enumerate() {
-                let needed = Faces::of_image(image);
-                if faces.contains(needed) {
-                    let stands_by = usize::from(!in_use.contains(needed));
-                    self.lists[2 * index + stands_by].push(particle);
+            *faces = Faces::default();
+            if particle != u32::MAX {
+                let in_use = faces_in_use(particle);
+                if in_use != Faces::default() {
+                    let wrappable = Faces::within(sim_box, input.at(particle as usize), slack + margin);
+                    *faces = in_use.union(wrappable.with_opposites());
                 }
             }
-        }
+        });
+
+        self.near_faces.clear();
+        let near_faces = self.faces.iter().zip(&slots.particle).filter(|(faces, _)| **faces != Faces::default());
+        self.near_faces.extend(near_faces.map(|(&faces, &particle)| NearFaces {
+            particle,
+            faces,
+            in_use: faces_in_use(particle),
+        }));
+
+        let images = &sim_box.images()[1..];
+        self.lists.resize(images.len(), [Vec::new(), Vec::new()]);
+        self.lists.par_iter_mut().zip(images).for_each(|([in_use, standing_by], &image)| {
+            in_use.clear();
+            standing_by.clear();
+            let needed = Faces::of_image(image);
+            for near in self.near_faces.iter().filter(|near| near.faces.contains(needed)) {
+                if near.in_use.contains(needed) { &mut *in_use } else { &mut *standing_by }.push(near.particle);
+            }
+        });
 
         self.leaf_images.clear();
-        for (index, list) in self.lists.iter().enumerate() {
-            slots.particle.extend_from_slice(list);
-            slots.particle.resize(slots.particle.len().next_multiple_of(LANES), u32::MAX);
-            self.leaf_images.resize(slots.particle.len() / LANES - self.real_leaves(), images[index / 2]);
+        for (lists, &image) in self.lists.iter().zip(images) {
+            for list in lists {
+                slots.particle.extend_from_slice(list);
+                slots.particle.resize(slots.particle.len().next_multiple_of(LANES), u32::MAX);
+                self.leaf_images.resize(slots.particle.len() / LANES - self.faces.len() / LANES, image);
+            }
         }
     }
 
-    /// Whether every image needed at the current positions exists.
-    pub fn suffice(&self, slots: &Slots, input: &Input) -> bool {
+    /// Whether every image needed at the positions that `tree` was fitted to exists.
+    pub fn suffice(&self, tree: &Tree, slots: &Slots, input: &Input) -> bool {
         let slack = coordinate_slack(input.sim_box);
-        self.faces.par_iter().zip(&slots.particle).enumerate().with_min_len(4096).all(|(slot, (faces, &particle))| {
+        // Most leaves are far from all faces as a whole. Twice the slack, because their boxes are rounded once more.
+        let interior = interior(input.sim_box, 2.0 * slack);
+        let slot_suffices = |slot: usize| {
+            let particle = slots.particle[slot];
             particle == u32::MAX || {
                 let reach = slack + half_width(input.radius(particle as usize));
-                faces.contains(Faces::within(input.sim_box, slots.at(slot), reach))
+                self.faces[slot].contains(Faces::within(input.sim_box, slots.at(slot), reach))
             }
-        })
+        };
+        (0..self.real_leaves())
+            .into_par_iter()
+            .with_min_len(256)
+            .all(|leaf| interior.holds(&tree.leaf(leaf)) || (leaf * LANES..(leaf + 1) * LANES).all(slot_suffices))
     }
 
     /// The image of leaf `leaf`; `[0, 0, 0]` for leaves of real particles.
@@ -131,13 +156,24 @@ impl Ghosts {
     pub fn bytes(&self) -> usize {
         self.faces.capacity()
             + size_of::<[i8; 3]>() * self.leaf_images.capacity()
-            + self.lists.iter().map(|list| size_of::<u32>() * list.capacity()).sum::<usize>()
+            + size_of::<NearFaces>() * self.near_faces.capacity()
+            + self.lists.iter().flatten().map(|list| size_of::<u32>() * list.capacity()).sum::<usize>()
     }
 
     #[inline(always)]
     fn real_leaves(&self) -> usize {
         self.faces.len() / LANES
     }
+}
+
+/// What is further than `margin` from all periodic faces.
+fn interior(sim_box: &SimBox, margin: f32) -> Aabb {
+    let mut interior = Aabb { lo: [f32::NEG_INFINITY; 3], hi: [f32::INFINITY; 3] };
+    for axis in (0..3).filter(|&axis| sim_box.is_periodic(axis)) {
+        interior.lo[axis] = sim_box.lo()[axis] + margin;
+        interior.hi[axis] = sim_box.hi()[axis] - margin;
+    }
+    interior
 }
 
 /// How far rounding may move a particle across a face.

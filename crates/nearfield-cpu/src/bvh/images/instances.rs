@@ -9,18 +9,18 @@ use crate::{LANES, bvh::node::Node};
 /// The top level: the tree's box in each image, sixteen to a node.
 #[derive(Clone, Debug)]
 pub(in crate::bvh) struct Instances {
-    top: [Node; 2],
+    top: Box<[Node; 2]>,
 }
 
 impl Default for Instances {
     fn default() -> Self {
-        Self { top: [Node::EMPTY; 2] }
+        Self { top: Box::new([Node::EMPTY; 2]) }
     }
 }
 
 impl Instances {
     pub fn update(&mut self, scene: &Scene) {
-        *self = Self::default();
+        self.top.fill(Node::EMPTY);
         for (bit, image) in scene.sim_box.images().into_iter().enumerate() {
             self.top[bit / LANES].set(bit % LANES, &scene.root.translated(scene.sim_box.shift(image)));
         }
