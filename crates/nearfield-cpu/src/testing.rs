@@ -110,7 +110,7 @@ pub fn cases() -> Vec<Case> {
         cases.push(Case::new(&named("sphere surface, seed 8"), cubic(3.0), sphere.collect(), Radii::Uniform(0.12)));
         let points = uniform_points(9, 1000, [1000.0; 3]);
         cases.push(Case::new(&named("log-normal, seed 9"), cubic(1000.0), points, lognormal_radii(9, 1000, 330.0)));
-        let points = uniform_points(10, 3000, [1000.0; 3]);
+        let points = uniform_points(10, 1200, [1000.0; 3]);
         cases.push(Case::new(&named("sparse, seed 10"), cubic(1000.0), points.clone(), Radii::Uniform(1.0)));
         cases.push(Case::new(&named("dense, seed 10"), cubic(1000.0), points, Radii::Uniform(160.0)));
         let points = uniform_points(11, 500, [100.0, 0.0, 0.0]);

@@ -48,7 +48,7 @@ impl Layout {
     /// particles between two values are in the pencils between theirs.
     #[inline(always)]
     pub fn coordinate(&self, axis: usize, value: f32) -> usize {
-        (((value - self.lo[axis]) * self.per_length[axis]) as usize).min(self.n[axis] - 1)
+        (((value - self.lo[axis]) * self.per_length[axis]) as i32).clamp(0, self.n[axis] as i32 - 1) as usize
     }
 
     /// Pencil of a point, counted from the first pencil of the first class.

@@ -31,14 +31,16 @@ const PENCIL_OCCUPANCY: f64 = 8.0;
 /// Particles to a cell, along x in its pencil.
 const CELL_OCCUPANCY: usize = 2;
 
-/// Most particles in a group.
-const GROUP_SIZE: usize = 8;
+/// Most particles in a group, unless asked for otherwise. Against 8, lists and counts take 0.8 of the time: finding
+/// the runs of a group costs as much as testing its candidates. What is proposed to each particle grows by 1.2 to 1.4,
+/// but a consumer that tests candidates against the group's box first hardly notices.
+const GROUP_SIZE: usize = 16;
 
 /// A cell grid over N particles.
 ///
 /// Buffers are kept from one [`Grid::build`] to the next. The order of slots depends on the input alone, not on the
 /// number of threads.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Grid {
     slots: Slots,
     layouts: Vec<Layout>,
@@ -48,7 +50,11 @@ pub struct Grid {
     cells: Vec<u32>,
     /// First slot of each group, and a sentinel.
     groups: Vec<u32>,
+    /// Most particles in a group.
+    group_size: usize,
     bounds: Bounds,
+    /// Largest magnitude of a coordinate, images included: what rounding errors scale with.
+    extent: f32,
     /// Period of each axis, zero where it has none.
     period: [f32; 3],
     scratch: sort::Scratch,
@@ -57,7 +63,24 @@ pub struct Grid {
 impl Grid {
     /// An empty grid.
     pub fn new() -> Self {
-        Self::default()
+        Self::with_group_size(GROUP_SIZE)
+    }
+
+    /// An empty grid whose groups hold up to `group_size` particles. Small groups are proposed fewer candidates, large
+    /// ones need fewer searches.
+    pub fn with_group_size(group_size: usize) -> Self {
+        Self {
+            slots: Slots::default(),
+            layouts: Vec::new(),
+            pencils: Vec::new(),
+            cells: Vec::new(),
+            groups: Vec::new(),
+            group_size: group_size.max(1),
+            bounds: Bounds::default(),
+            extent: 0.0,
+            period: [0.0; 3],
+            scratch: sort::Scratch::default(),
+        }
     }
 
     /// Sorts the particles of `input` into cells.
@@ -65,6 +88,7 @@ impl Grid {
         let lengths = input.sim_box.lengths();
         self.period = std::array::from_fn(|axis| if input.sim_box.is_periodic(axis) { lengths[axis] } else { 0.0 });
         self.bounds = Bounds::of(input);
+        self.extent = largest(self.bounds.lo).max(largest(self.bounds.hi)) + largest(self.period);
         let bulk = survey::Bulk::of(input, &self.bounds);
         let classes = match input.radii {
             InputRadii::Uniform(_) => classes::single(input.len()),
@@ -82,6 +106,17 @@ impl Grid {
             + 4 * (self.cells.capacity() + self.groups.capacity())
             + self.scratch.bytes()
     }
+}
+
+impl Default for Grid {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// The largest magnitude.
+fn largest(values: [f32; 3]) -> f32 {
+    values.iter().fold(0.0f32, |m, v| m.max(v.abs()))
 }
 
 impl Structure for Grid {

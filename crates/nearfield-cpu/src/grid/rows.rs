@@ -1,7 +1,7 @@
 //! The search: which part of each pencil a group of queries can reach.
 
-use super::Grid;
 use super::layout::{Layout, Pencil};
+use super::{Grid, largest};
 use crate::{GroupBox, Run};
 use nearfield_core::predicate::conservative_range;
 
@@ -9,7 +9,7 @@ impl Pencil {
     /// Cell number of `x`; it never decreases with `x`, and values beyond the last cell give larger numbers.
     #[inline(always)]
     pub(super) fn cell_of(&self, x: f32) -> usize {
-        ((x - self.x0) * self.cells_per_length) as usize
+        (((x - self.x0) * self.cells_per_length) as i32).max(0) as usize
     }
 
     /// Squared distance from a group to the particles' bounds across x.
@@ -36,10 +36,7 @@ impl Images {
 impl Grid {
     /// Appends the runs of `group`: see [`crate::Structure::runs`].
     pub(super) fn find_rows(&self, group: &GroupBox, out: &mut Vec<Run>) {
-        let largest = |values: [f32; 3]| values.iter().fold(0.0f32, |m, v| m.max(v.abs()));
-        // Magnitudes of all coordinates, images included, which rounding errors scale with.
-        let extent = largest(self.bounds.lo).max(largest(self.bounds.hi)).max(largest(group.lo)).max(largest(group.hi))
-            + largest(self.period);
+        let extent = self.extent.max(largest(group.lo)).max(largest(group.hi));
         let farthest = self.layouts.iter().fold(group.radius, |r, layout| r.max(layout.largest));
         let farthest = conservative_range(farthest, extent);
         let [along_x, along_y, along_z] = std::array::from_fn(|axis| self.images_in_reach(axis, group, farthest));

@@ -3,7 +3,7 @@
 //! Stability makes the order of slots independent of the number of threads.
 
 use super::layout::{Layout, Pencil};
-use super::{CELL_OCCUPANCY, GROUP_SIZE, Grid, classes};
+use super::{CELL_OCCUPANCY, Grid, classes};
 use crate::{Input, LANES, Slots};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
@@ -110,8 +110,8 @@ impl Grid {
             blocks.push(block);
         }
         blocks.push(rest);
-        let layouts = &self.layouts;
-        blocks.par_iter_mut().for_each(|block| block.sort(input, layouts));
+        let (layouts, group_size) = (&self.layouts, self.group_size);
+        blocks.par_iter_mut().for_each(|block| block.sort(input, layouts, group_size));
         self.groups.clear();
         for block in &blocks {
             self.groups.extend_from_slice(&block.groups);
@@ -212,7 +212,7 @@ impl<'a> Block<'a> {
         (first, second)
     }
 
-    fn sort(&mut self, input: &Input, layouts: &[Layout]) {
+    fn sort(&mut self, input: &Input, layouts: &[Layout], group_size: usize) {
         let Some(&begin) = self.pencils.first() else { return };
         let mut cell_of = Vec::new();
         for p in 0..self.pencils.len() {
@@ -263,7 +263,7 @@ impl<'a> Block<'a> {
             }
             let class = layouts.partition_point(|layout| layout.first <= self.first_pencil + p) - 1;
             let x = &self.position[0][slots];
-            divide_groups(x, start.slots, layouts[class].group_length, &mut self.groups);
+            divide_groups(x, start.slots, group_size, layouts[class].group_length, &mut self.groups);
         }
     }
 }
@@ -285,8 +285,8 @@ fn measure(start: Pencil, end: Pencil, records: &mut [Record]) -> Pencil {
 }
 
 /// Appends the first slots of the groups of one pencil: even in size, and short along x.
-fn divide_groups(x: &[f32], first_slot: u32, longest: f32, groups: &mut Vec<u32>) {
-    let size = x.len().div_ceil(x.len().div_ceil(GROUP_SIZE));
+fn divide_groups(x: &[f32], first_slot: u32, most: usize, longest: f32, groups: &mut Vec<u32>) {
+    let size = x.len().div_ceil(x.len().div_ceil(most));
     let mut begin = 0;
     let (mut lo, mut hi) = (f32::MAX, f32::MIN);
     for (k, &x) in x.iter().enumerate() {

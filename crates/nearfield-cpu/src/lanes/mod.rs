@@ -19,7 +19,6 @@ pub(crate) trait Lanes: Copy {
 
     fn splat(self, value: f32) -> Self::F;
     fn load(self, from: &[f32; 16]) -> Self::F;
-    fn store(self, value: Self::F, to: &mut [f32; 16]);
     fn add(self, a: Self::F, b: Self::F) -> Self::F;
     fn sub(self, a: Self::F, b: Self::F) -> Self::F;
     fn mul(self, a: Self::F, b: Self::F) -> Self::F;
@@ -31,7 +30,6 @@ pub(crate) trait Lanes: Copy {
 
     fn splat_u(self, value: u32) -> Self::U;
     fn load_u(self, from: &[u32; 16]) -> Self::U;
-    fn store_u(self, value: Self::U, to: &mut [u32; 16]);
     fn ne_u(self, a: Self::U, b: Self::U) -> u16;
     /// a > b, for values below 2³¹.
     fn gt_u(self, a: Self::U, b: Self::U) -> u16;

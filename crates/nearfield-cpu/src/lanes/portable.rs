@@ -38,11 +38,6 @@ impl Lanes for Portable {
     }
 
     #[inline(always)]
-    fn store(self, value: [f32; 16], to: &mut [f32; 16]) {
-        *to = value;
-    }
-
-    #[inline(always)]
     fn add(self, a: [f32; 16], b: [f32; 16]) -> [f32; 16] {
         from_fn(|k| a[k] + b[k])
     }
@@ -80,11 +75,6 @@ impl Lanes for Portable {
     #[inline(always)]
     fn load_u(self, from: &[u32; 16]) -> [u32; 16] {
         *from
-    }
-
-    #[inline(always)]
-    fn store_u(self, value: [u32; 16], to: &mut [u32; 16]) {
-        *to = value;
     }
 
     #[inline(always)]

@@ -19,13 +19,13 @@ impl Kernel for Everything<'_> {
         let mut bits = Vec::new();
         let mut out = [0.0; 16];
         for value in [l.add(a, b), l.sub(a, b), l.mul(a, b), l.mul_add(a, b, c)] {
-            l.store(value, &mut out);
+            l.compress(u16::MAX, value, &mut out);
             bits.extend(out.iter().map(|x| if x.is_nan() { 1 } else { x.to_bits() }));
         }
-        l.store(l.max(b, c), &mut out);
+        l.compress(u16::MAX, l.max(b, c), &mut out);
         bits.extend(out.map(f32::to_bits));
         let mut out_u = [0; 16];
-        l.store_u(v, &mut out_u);
+        l.compress_u(u16::MAX, v, &mut out_u);
         bits.extend(out_u);
         for mask in [masks[0], masks[1], 0, 1, 0x8000, 0xffff, 0x5aa5, 0x00ff, 0xff00] {
             let n = mask.count_ones() as usize;

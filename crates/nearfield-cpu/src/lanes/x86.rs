@@ -50,11 +50,6 @@ impl Lanes for V4 {
     }
 
     #[inline(always)]
-    fn store(self, value: __m512, to: &mut [f32; 16]) {
-        *to = cast(value);
-    }
-
-    #[inline(always)]
     fn add(self, a: __m512, b: __m512) -> __m512 {
         self.avx512f._mm512_add_ps(a, b)
     }
@@ -92,11 +87,6 @@ impl Lanes for V4 {
     #[inline(always)]
     fn load_u(self, from: &[u32; 16]) -> __m512i {
         cast(*from)
-    }
-
-    #[inline(always)]
-    fn store_u(self, value: __m512i, to: &mut [u32; 16]) {
-        *to = cast(value);
     }
 
     #[inline(always)]
@@ -168,11 +158,6 @@ impl Lanes for V3 {
     }
 
     #[inline(always)]
-    fn store(self, value: [__m256; 2], to: &mut [f32; 16]) {
-        *to = cast(value);
-    }
-
-    #[inline(always)]
     fn add(self, a: [__m256; 2], b: [__m256; 2]) -> [__m256; 2] {
         both(a, b, |a, b| self.avx._mm256_add_ps(a, b))
     }
@@ -212,11 +197,6 @@ impl Lanes for V3 {
     #[inline(always)]
     fn load_u(self, from: &[u32; 16]) -> [__m256i; 2] {
         cast(*from)
-    }
-
-    #[inline(always)]
-    fn store_u(self, value: [__m256i; 2], to: &mut [u32; 16]) {
-        *to = cast(value);
     }
 
     #[inline(always)]

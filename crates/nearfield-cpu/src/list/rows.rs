@@ -61,13 +61,21 @@ pub struct Row<'a> {
 /// Rows as one array after the other. `indices` and `r2` are longer than `len`: stores write whole chunks.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Output {
-    pub len: usize,
+    len: usize,
     contents: Contents,
-    pub images: Vec<[i8; 3]>,
+    images: Vec<[i8; 3]>,
     indices: Vec<u32>,
     r2: Vec<f32>,
     particle: Vec<u32>,
     ends: Vec<usize>,
+}
+
+/// Where a row is written: from `len` on, in whole chunks.
+pub(super) struct Room<'a> {
+    pub len: usize,
+    pub indices: &'a mut [u32],
+    pub r2: &'a mut [f32],
+    pub images: &'a mut Vec<[i8; 3]>,
 }
 
 impl Output {
@@ -79,27 +87,19 @@ impl Output {
         self.ends.clear();
     }
 
-    /// Makes room for a row of `most` neighbours.
+    /// Room for a row of `most` neighbours.
     #[inline(always)]
-    pub fn reserve(&mut self, most: usize) {
-        let Contents::Rows { distances, .. } = self.contents else { return };
-        let needed = self.len + most + LANES;
-        if self.indices.len() < needed {
-            self.indices.resize(needed.next_power_of_two(), 0);
+    pub fn room_for(&mut self, most: usize) -> Room<'_> {
+        if let Contents::Rows { distances, .. } = self.contents {
+            let needed = self.len + most + LANES;
+            if self.indices.len() < needed {
+                self.indices.resize(needed.next_power_of_two(), 0);
+            }
+            if distances && self.r2.len() < needed {
+                self.r2.resize(needed.next_power_of_two(), 0.0);
+            }
         }
-        if distances && self.r2.len() < needed {
-            self.r2.resize(needed.next_power_of_two(), 0.0);
-        }
-    }
-
-    #[inline(always)]
-    pub fn index_chunk(&mut self, at: usize) -> &mut [u32; LANES] {
-        self.indices[at..].first_chunk_mut().expect("room was made")
-    }
-
-    #[inline(always)]
-    pub fn r2_chunk(&mut self, at: usize) -> &mut [f32; LANES] {
-        self.r2[at..].first_chunk_mut().expect("room was made")
+        Room { len: self.len, indices: &mut self.indices, r2: &mut self.r2, images: &mut self.images }
     }
 
     #[inline(always)]

@@ -1,7 +1,7 @@
 //! The kernel: candidates tested against each query of a group, those within range appended to its row.
 
-use super::candidates::{Candidates, chunk};
-use super::rows::{Contents, Queries, Rows};
+use super::candidates::{Candidates, Segment};
+use super::rows::{Contents, Output, Queries, Room, Rows};
 use super::rule::{Acting, Bipartite, Full, Half, Keep, Lane, Query, Rule};
 use crate::lanes::{Kernel, Lanes};
 use crate::{GroupBox, LANES, Structure};
@@ -36,7 +36,7 @@ impl Kernel for Scan<'_> {
             };
             runs.clear();
             self.structure.runs(&bounds, runs);
-            candidates.gather(lanes, slots, runs, per_particle);
+            candidates.gather(lanes, (slots, self.sim_box), &bounds, runs, per_particle);
             let work =
                 Group { queries: self.queries, group, sim_box: self.sim_box, candidates, contents: self.contents };
             match (self.rule, per_particle) {
@@ -61,7 +61,7 @@ struct Group<'a> {
 
 impl Group<'_> {
     #[inline(always)]
-    fn scan<L: Lanes, K: Keep>(self, lanes: L, output: &mut super::rows::Output) {
+    fn scan<L: Lanes, K: Keep>(self, lanes: L, output: &mut Output) {
         let slots = self.queries.structure.slots();
         for slot in self.group {
             let particle = slots.particle[slot];
@@ -69,69 +69,54 @@ impl Group<'_> {
                 continue;
             }
             let radius = slots.radius.get(slot).copied().unwrap_or(self.queries.uniform);
+            let [x, y, z] = slots.at(slot);
             let query = Query {
-                position: slots.at(slot).map(|x| lanes.splat(x)),
+                position: [lanes.splat(x), lanes.splat(y), lanes.splat(z)],
                 radius: lanes.splat(radius),
                 radius2: lanes.splat(radius * radius),
                 particle: lanes.splat_u(particle),
             };
-            output.reserve(self.candidates.len());
-            let mut len = output.len;
+            let Room { mut len, indices, r2: r2s, images } = output.room_for(self.candidates.len());
             for segment in &self.candidates.segments {
-                let range = segment.start..segment.end;
-                let shift =
-                    (segment.image != [0; 3]).then(|| self.sim_box.shift(segment.image).map(|s| lanes.splat(s)));
+                let shift = self.sim_box.shift(segment.image);
+                let shift = [lanes.splat(shift[0]), lanes.splat(shift[1]), lanes.splat(shift[2])];
+                let shift = (segment.image != [0; 3]).then_some(shift);
+                let block = Block { lanes, query, candidates: self.candidates, segment };
                 len = match (self.contents, shift) {
-                    (Contents::Count, None) => each_chunk::<L, K>(
-                        lanes,
-                        &query,
-                        self.candidates,
-                        range,
+                    (Contents::Count, None) => block.each_chunk::<K>(
                         None,
                         len,
                         #[inline(always)]
                         |_, _, _, _| (),
                     ),
-                    (Contents::Count, shift) => each_chunk::<L, K>(
-                        lanes,
-                        &query,
-                        self.candidates,
-                        range,
+                    (Contents::Count, shift) => block.each_chunk::<K>(
                         shift,
                         len,
                         #[inline(always)]
                         |_, _, _, _| (),
                     ),
-                    (Contents::Rows { distances: false, .. }, None) => each_chunk::<L, K>(
-                        lanes,
-                        &query,
-                        self.candidates,
-                        range,
+                    (Contents::Rows { distances: false, .. }, None) => block.each_chunk::<K>(
                         None,
                         len,
                         #[inline(always)]
-                        |at, mask, _, ids| {
-                            lanes.compress_u(mask, ids, output.index_chunk(at));
+                        |at, mask, _, particle| {
+                            lanes.compress_u(mask, particle, chunk_mut(indices, at));
                         },
                     ),
-                    (Contents::Rows { distances, .. }, shift) => each_chunk::<L, K>(
-                        lanes,
-                        &query,
-                        self.candidates,
-                        range,
+                    (Contents::Rows { distances, .. }, shift) => block.each_chunk::<K>(
                         shift,
                         len,
                         #[inline(always)]
-                        |at, mask, r2, ids| {
-                            lanes.compress_u(mask, ids, output.index_chunk(at));
+                        |at, mask, r2, particle| {
+                            lanes.compress_u(mask, particle, chunk_mut(indices, at));
                             if distances {
-                                lanes.compress(mask, r2, output.r2_chunk(at));
+                                lanes.compress(mask, r2, chunk_mut(r2s, at));
                             }
                         },
                     ),
                 };
                 if let Contents::Rows { images: true, .. } = self.contents {
-                    output.images.resize(len, segment.image);
+                    images.resize(len, segment.image);
                 }
             }
             output.finish_row(particle, len);
@@ -139,39 +124,58 @@ impl Group<'_> {
     }
 }
 
-/// Tests whole chunks and hands each to `sink` with the length so far; gives the length after.
 #[inline(always)]
-fn each_chunk<L: Lanes, K: Keep>(
+fn chunk_mut<T>(values: &mut [T], at: usize) -> &mut [T; LANES] {
+    values[at..].first_chunk_mut().expect("room was made for whole chunks")
+}
+
+/// One query and the candidates of one image.
+struct Block<'a, L: Lanes> {
     lanes: L,
-    query: &Query<L>,
-    candidates: &Candidates,
-    range: Range<usize>,
-    shift: Option<[L::F; 3]>,
-    mut len: usize,
-    mut sink: impl FnMut(usize, u16, L::F, L::U),
-) -> usize {
-    for at in range.step_by(LANES) {
-        // The shared predicate (nearfield_core::predicate), operation by operation.
-        let mut dx = lanes.sub(lanes.load(chunk(&candidates.x, at)), query.position[0]);
-        let mut dy = lanes.sub(lanes.load(chunk(&candidates.y, at)), query.position[1]);
-        let mut dz = lanes.sub(lanes.load(chunk(&candidates.z, at)), query.position[2]);
-        if let Some(shift) = shift {
-            dx = lanes.add(dx, shift[0]);
-            dy = lanes.add(dy, shift[1]);
-            dz = lanes.add(dz, shift[2]);
+    query: Query<L>,
+    candidates: &'a Candidates,
+    segment: &'a Segment,
+}
+
+impl<L: Lanes> Block<'_, L> {
+    /// Tests whole chunks and hands each to `sink` with the length so far; gives the length after.
+    #[inline(always)]
+    fn each_chunk<K: Keep>(
+        &self,
+        shift: Option<[L::F; 3]>,
+        mut len: usize,
+        mut sink: impl FnMut(usize, u16, L::F, L::U),
+    ) -> usize {
+        let Self { lanes, query, candidates, .. } = self;
+        let range = self.segment.start..self.segment.end;
+        let x = candidates.x[range.clone()].as_chunks::<LANES>().0;
+        let y = candidates.y[range.clone()].as_chunks::<LANES>().0;
+        let z = candidates.z[range.clone()].as_chunks::<LANES>().0;
+        let radius = candidates.radius[range.clone()].as_chunks::<LANES>().0;
+        let particle = candidates.particle[range].as_chunks::<LANES>().0;
+        for ((((x, y), z), radius), particle) in x.iter().zip(y).zip(z).zip(radius).zip(particle) {
+            // The shared predicate (nearfield_core::predicate), operation by operation.
+            let mut dx = lanes.sub(lanes.load(x), query.position[0]);
+            let mut dy = lanes.sub(lanes.load(y), query.position[1]);
+            let mut dz = lanes.sub(lanes.load(z), query.position[2]);
+            if let Some(shift) = shift {
+                dx = lanes.add(dx, shift[0]);
+                dy = lanes.add(dy, shift[1]);
+                dz = lanes.add(dz, shift[2]);
+            }
+            let r2 = lanes.mul_add(dx, dx, lanes.mul_add(dy, dy, lanes.mul(dz, dz)));
+            let particle = lanes.load_u(particle);
+            let (radius, range2) = if K::RADII {
+                let radius = lanes.load(radius);
+                let range = lanes.max(query.radius, radius);
+                (radius, lanes.mul(range, range))
+            } else {
+                (query.radius, query.radius2)
+            };
+            let mask = lanes.lt(r2, range2) & K::keep(*lanes, query, Lane { radius, particle });
+            sink(len, mask, r2, particle);
+            len += mask.count_ones() as usize;
         }
-        let r2 = lanes.mul_add(dx, dx, lanes.mul_add(dy, dy, lanes.mul(dz, dz)));
-        let particle = lanes.load_u(chunk(&candidates.particle, at));
-        let (radius, range2) = if K::RADII {
-            let radius = lanes.load(chunk(&candidates.radius, at));
-            let range = lanes.max(query.radius, radius);
-            (radius, lanes.mul(range, range))
-        } else {
-            (query.radius, query.radius2)
-        };
-        let mask = lanes.lt(r2, range2) & K::keep(lanes, query, Lane { radius, particle });
-        sink(len, mask, r2, particle);
-        len += mask.count_ones() as usize;
+        len
     }
-    len
 }
