@@ -41,7 +41,9 @@ pub fn choose(engine: &mut dyn Engine, system: &System, plan: &Plan) -> Result<C
     }
     let mut measured: Vec<(Method, f64)> = Vec::new();
     let begin = Instant::now();
-    for &method in [Method::Cell, Method::RtBoxes, Method::RtPerse, Method::RtForces, Method::RtList, Method::Brute].iter() {
+    for &method in
+        [Method::Cell, Method::RtBoxes, Method::RtPerse, Method::RtForces, Method::RtList, Method::Brute].iter()
+    {
         let too_many = method == Method::Brute && system.particles.len() > BRUTE_LIMIT;
         let plan = trial_plan(plan, method);
         if too_many || engine.supports(system, &plan).is_err() {
@@ -63,7 +65,8 @@ pub fn choose(engine: &mut dyn Engine, system: &System, plan: &Plan) -> Result<C
         measured.iter().copied().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((Method::Cell, f64::NAN));
     let others: Vec<String> =
         measured.iter().filter(|(m, _)| *m != method).map(|(m, s)| format!("{m} {:.3} ms", s * 1e3)).collect();
-    let reason = format!("fastest of those measured: {:.3} ms a force evaluation ({})", seconds * 1e3, others.join(", "));
+    let reason =
+        format!("fastest of those measured: {:.3} ms a force evaluation ({})", seconds * 1e3, others.join(", "));
     Ok(Choice { method, reason, measured })
 }
 

@@ -2,8 +2,8 @@
 
 use crate::Result;
 use nearfield_core::{ListRequest, NeighborList, Particles, Radii, SimBox, Vec3s};
-use nearfield_cpu::{Grid, Input, InputRadii, bipartite_list, count_neighbors, for_each_pair, neighbor_list};
 pub use nearfield_cpu::{Counts as Neighbors, Pair};
+use nearfield_cpu::{Grid, Input, InputRadii, bipartite_list, count_neighbors, for_each_pair, neighbor_list};
 use std::ops::ControlFlow;
 
 /// Points indexed for fixed-radius queries, on the CPU's cell grid.

@@ -45,12 +45,7 @@ pub fn file_system(config: &Config, path: &Path, boundary: Option<[Boundary; 3]>
     Ok(system)
 }
 
-fn assemble(
-    config: &Config,
-    path: &Path,
-    configuration: Configuration,
-    boundary: [Boundary; 3],
-) -> Result<System> {
+fn assemble(config: &Config, path: &Path, configuration: Configuration, boundary: [Boundary; 3]) -> Result<System> {
     let n = configuration.len();
     let sim_box = match configuration.bounds {
         Some(Bounds { lo, hi, .. }) => SimBox::new(lo, hi, boundary)?,

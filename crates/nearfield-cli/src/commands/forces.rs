@@ -55,7 +55,11 @@ pub fn run(arguments: &Forces) -> Result<(), Failure> {
         engine.per_particle(&mut results);
         io::write_forces_csv(path, &results)?;
     }
-    let tail = if config.interaction.tail_correction { system.tail_correction().unwrap_or_default() } else { Default::default() };
+    let tail = if config.interaction.tail_correction {
+        system.tail_correction().unwrap_or_default()
+    } else {
+        Default::default()
+    };
     let summary = Summary {
         n: system.particles.len(),
         pairs: totals.pairs,

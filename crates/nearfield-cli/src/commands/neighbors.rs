@@ -5,11 +5,7 @@ use super::{
     input_name, print_json, print_line,
 };
 use crate::{arguments::NeighborsArguments, failure::Failure};
-use nearfield::{
-    ListKind, ListRequest, Method, NeighborList,
-    config::Config,
-    engine, io,
-};
+use nearfield::{ListKind, ListRequest, Method, NeighborList, config::Config, engine, io};
 use serde::Serialize;
 use std::time::Instant;
 

@@ -45,7 +45,9 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
 
 fn config(arguments: &RunArguments) -> Result<Config, Failure> {
     let mut config = match &arguments.config {
-        Some(path) => Config::load(path, &arguments.set).map_err(|error| Failure::from(error).within(path.display()))?,
+        Some(path) => {
+            Config::load(path, &arguments.set).map_err(|error| Failure::from(error).within(path.display()))?
+        }
         None => Config::parse("", &arguments.set, "")?,
     };
     if let Some(device) = arguments.device {

@@ -1,3 +1,4 @@
+use crate::Slots;
 use super::*;
 use crate::testing::{Case, cases, uniform_points};
 use nearfield_core::{Boundary, Radii, SimBox};
@@ -23,7 +24,7 @@ fn slots_are_a_permutation_of_the_particles_with_padding_behind() {
                 assert_eq!(slots.radius[s], input.radius(i), "{}", case.name);
             }
         }
-        assert!(slots.x[slots.len()..].iter().all(|x| x.is_nan()));
+        assert!(slots.x[slots.len()..].iter().all(|&x| x == Slots::FAR));
         assert!(slots.particle[slots.len()..].iter().all(|&p| p == u32::MAX));
     }
 }

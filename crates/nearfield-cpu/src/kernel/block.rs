@@ -48,11 +48,14 @@ pub(super) fn evaluate<L: PairLaw, C: Coefficients, A: Accumulator, const ENERGY
         let kind = if C::TYPED { c.kind[l] } else { 0 };
         let inside = predicate::is_neighbor(r2, range) & ((l as u32) < c.valid) & (l as u32 != c.own);
         let pair = coefficients.get(query.kind, kind, range);
-        let f = law.f_over_r(r2, &pair).min(cap);
+        let f = law.f_over_r(r2, &pair);
+        // Not `min`, which costs three instructions for NaN: that becomes the cap here, and 0/0 again when dr = 0.
+        let f = if f < cap { f } else { cap };
         let f = if inside { f } else { 0.0 };
         sums.add_force(l, -(f * dr[0]), -(f * dr[1]), -(f * dr[2]));
         if ENERGY {
-            let u = law.energy(r2, &pair).min(cap);
+            let u = law.energy(r2, &pair);
+            let u = if u < cap { u } else { cap };
             let u = if inside { u } else { 0.0 };
             sums.add_energy(l, u, f * r2, u32::from(inside));
         }

@@ -91,7 +91,15 @@ impl<L: PairLaw, C: Coefficients, A: Summing, const ENERGY: bool> NullaryFnOnce 
                 for run in runs.iter() {
                     let shift = physics.sim_box.shift(run.image);
                     gather_run::<L, C, A, ENERGY>(
-                        law, coefficients, physics.cap, &query, slots, run, slot, shift, &mut sums,
+                        law,
+                        coefficients,
+                        physics.cap,
+                        &query,
+                        slots,
+                        run,
+                        slot,
+                        shift,
+                        &mut sums,
                     );
                 }
                 (task.finish)(particle, &sums.finish());

@@ -73,9 +73,7 @@ impl ScatterSums {
 
 fn add_f64(sum: &AtomicU64, value: f64) {
     let mut old = sum.load(Relaxed);
-    while let Err(now) =
-        sum.compare_exchange_weak(old, (f64::from_bits(old) + value).to_bits(), Relaxed, Relaxed)
-    {
+    while let Err(now) = sum.compare_exchange_weak(old, (f64::from_bits(old) + value).to_bits(), Relaxed, Relaxed) {
         old = now;
     }
 }

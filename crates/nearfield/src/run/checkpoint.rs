@@ -1,10 +1,6 @@
 //! Checkpoints: everything a run needs to continue, in MessagePack.
 
-use crate::{
-    Error, Result,
-    config::Config,
-    io::atomic_write,
-};
+use crate::{Error, Result, config::Config, io::atomic_write};
 use nearfield_core::{Method, Particles, Radii, Report, SimBox, System};
 use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, fs, path::Path};
