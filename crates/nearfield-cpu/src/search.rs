@@ -17,7 +17,7 @@ pub struct Pair {
     pub j: u32,
     /// `dr = (x_j - x_i) + image * box length`.
     pub image: [i8; 3],
-    /// Squared distance, [length²].
+    /// Squared distance, \[length²\].
     pub r2: f32,
 }
 

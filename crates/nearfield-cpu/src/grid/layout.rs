@@ -27,7 +27,7 @@ pub(super) struct Pencil {
 /// The pencils of one class: `n[1]` layers along z of `n[0]` pencils along y.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Layout {
-    /// Largest radius of the class.
+    /// Upper limit of the radii of the class.
     pub limit: f32,
     /// Largest radius of the class; zero where queries bring the one radius there is.
     pub largest: f32,

@@ -12,14 +12,18 @@ fn built(case: &Case) -> Grid {
 #[test]
 fn slots_are_a_permutation_of_the_particles_with_padding_behind() {
     for case in cases() {
-        let grid = built(&case);
-        let (slots, input) = (grid.slots(), case.input());
+        let kind: Vec<u32> = (0..case.particles.len() as u32).map(|i| i % 3).collect();
+        let input = Input { kind: &kind, ..case.input() };
+        let mut grid = Grid::new();
+        grid.build(&input);
+        let slots = grid.slots();
         assert_eq!(slots.len(), input.len(), "{}", case.name);
         let mut seen = vec![false; input.len()];
         for s in 0..slots.len() {
             let i = slots.particle[s] as usize;
             assert!(!std::mem::replace(&mut seen[i], true), "{}: {i} twice", case.name);
             assert_eq!(slots.at(s), input.at(i), "{}", case.name);
+            assert_eq!(slots.kind[s], kind[i], "{}", case.name);
             if !slots.radius.is_empty() {
                 assert_eq!(slots.radius[s], input.radius(i), "{}", case.name);
             }

@@ -162,3 +162,22 @@ fn a_large_system_on_many_threads_is_listed_as_on_one() {
     assert!(one.n_pairs() > 90_000, "{}", one.n_pairs());
     assert!(on(7) == one);
 }
+
+#[test]
+fn a_grid_sorted_by_several_tasks_counts_what_all_pairs_count() {
+    let sim_box = SimBox::cubic(60.0, Boundary::Periodic).unwrap();
+    let radii = (0..12_000).map(|k| 0.1 * 200f32.powf((k % 101) as f32 / 100.0)).collect();
+    let points = uniform_points(33, 12_000, [60.0; 3]);
+    for radii in [Radii::PerParticle(radii), Radii::Uniform(3.0)] {
+        let case = Case::new("uniform, seed 33", sim_box, points.clone(), radii);
+        let mut brute = Brute::new();
+        brute.build(&case.input());
+        let expected = count_neighbors(&brute, &case.input());
+        assert!(expected.pairs > 30_000, "{}", expected.pairs);
+        for group_size in [1, 8, 16, 100] {
+            let mut grid = Grid::with_group_size(group_size);
+            grid.build(&case.input());
+            assert!(count_neighbors(&grid, &case.input()) == expected, "groups of {group_size}");
+        }
+    }
+}
