@@ -1,5 +1,5 @@
-use crate::Slots;
 use super::*;
+use crate::Slots;
 use crate::testing::{Case, cases, uniform_points};
 use nearfield_core::{Boundary, Radii, SimBox};
 

@@ -57,7 +57,9 @@ pub(super) fn evaluate<L: PairLaw, C: Coefficients, A: Accumulator, const ENERGY
             let u = law.energy(r2, &pair);
             let u = if u < cap { u } else { cap };
             let u = if inside { u } else { 0.0 };
-            sums.add_energy(l, u, f * r2, u32::from(inside));
+            // Padding is infinitely far: zero times its squared distance would not be zero.
+            let w = if inside { f * r2 } else { 0.0 };
+            sums.add_energy(l, u, w, u32::from(inside));
         }
     }
 }
