@@ -107,6 +107,7 @@ impl<L: PairLaw, C: Coefficients> NullaryFnOnce for Kernel<'_, L, C> {
 impl<L: PairLaw, C: Coefficients> Kernel<'_, L, C> {
     /// Evaluates the first `LANES` entries; lanes past the end repeat the last entry and are masked.
     #[inline(always)]
+    #[expect(clippy::needless_range_loop, reason = "lanes and axes of several arrays")]
     fn block(&self, query: &Query, i: usize, indices: &[u32], images: &[[i8; 3]], sums: &mut Exact) {
         let mut position = [[0.0; LANES]; 3];
         let (mut radius, mut kind) = ([0.0; LANES], [0; LANES]);
