@@ -146,7 +146,7 @@ fn an_unknown_method_device_or_word_lists_those_that_exist() {
     folder.refuse("neighbors good.xyz --cutoff 1 --boundary pp", &["three letters"]);
     folder.refuse("forces good.xyz --truncation none", &["cut, energy, force"]);
     folder.refuse("generate hexagonal -n 10 --density 1 -o a.xyz", &["fcc", "sphere-surface"]);
-    folder.refuse("generate fcc -n 10 --density 1 --radii gauss:1,2 -o a.xyz", &["lognormal"]);
+    folder.refuse("generate fcc -n 4 --density 1 --radii gauss:1,2 -o a.xyz", &["lognormal"]);
     folder.refuse("simulate run.toml", &["simulate"]);
     folder.refuse("run", &["CONFIG"]);
 }
@@ -176,9 +176,9 @@ fn a_place_that_cannot_be_written_is_named() {
     folder.refuse("neighbors good.xyz --cutoff 1 --output pairs.txt", &["pairs.txt", ".csv or .npz"]);
     folder.refuse("forces good.xyz --output file/forces.csv", &["cannot write file/forces.csv"]);
     folder.refuse("forces good.xyz --output forces.npz", &["forces.npz", ".csv"]);
-    folder.refuse("generate fcc -n 10 --density 1 -o file/a.xyz", &["cannot write file/a.xyz"]);
-    folder.refuse("generate fcc -n 10 --density 1 -o a.gro", &["a.gro"]);
-    folder.refuse("generate fcc -n 10 --density 1 -o a", &["unknown file format"]);
+    folder.refuse("generate fcc -n 4 --density 1 -o file/a.xyz", &["cannot write file/a.xyz"]);
+    folder.refuse("generate fcc -n 4 --density 1 -o a.gro", &["a.gro"]);
+    folder.refuse("generate fcc -n 4 --density 1 -o a", &["unknown file format"]);
 }
 
 #[test]

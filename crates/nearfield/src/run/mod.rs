@@ -45,7 +45,9 @@ impl Run {
             Choice::Auto => None,
             Choice::Of(method) => Some(method),
         };
-        let simulation = simulation(&config, method)?;
+        let mut simulation = simulation(&config, method)?;
+        // Forces that cannot be are found before the directory is touched.
+        simulation.thermo()?;
         let moved = directory::prepare(&config.output.directory)?;
         let record = Record::new(&config, &simulation);
         Ok(Self { observers: observers(&config), config, simulation, record, saved: None, moved })
