@@ -61,7 +61,10 @@ pub enum Error {
         step: u64,
     },
     /// The run failed; what it had written is kept.
-    #[error("{source}{}", checkpoint.map(|step| format!("; the last good checkpoint is of step {step}")).unwrap_or_default())]
+    #[error("{source}; {}", match checkpoint {
+        Some(step) => format!("the last good checkpoint is of step {step}"),
+        None => "no checkpoint had been written yet (output.checkpoint_every)".into(),
+    })]
     Failed {
         /// Why.
         source: Box<Error>,

@@ -4,3 +4,5 @@ mod bad_input;
 mod command;
 mod evaluate;
 mod listings;
+mod resume;
+mod run;

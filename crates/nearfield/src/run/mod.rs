@@ -61,9 +61,10 @@ impl Run {
     pub fn resume(config: Config) -> Result<Self> {
         let path = config.output.directory.join(CHECKPOINT);
         let checkpoint = Checkpoint::read(&path)?;
-        checkpoint.check(&config).map_err(|reason| Error::Resume { path: path.clone(), reason })?;
+        let refused = |reason: String| Error::Resume { path: path.clone(), reason };
+        checkpoint.check(&config).map_err(refused)?;
         let mut simulation = simulation(&config, Some(checkpoint.method))?;
-        simulation.restore(&checkpoint)?;
+        simulation.restore(&checkpoint).map_err(|error| refused(error.to_string()))?;
         let mut observers = observers(&config);
         for observer in &mut observers {
             if let Some(saved) = checkpoint.observers.get(observer.name()) {
@@ -103,7 +104,8 @@ impl Run {
                 Err(Error::Interrupted { step })
             }
             Err(source) => {
-                self.write_record(Status::Failed(source.to_string()))?;
+                self.record.error = Some(source.to_string());
+                self.write_record(Status::Failed)?;
                 Err(Error::Failed { source: Box::new(source), checkpoint: self.saved })
             }
         }
@@ -125,7 +127,7 @@ impl Run {
 
     fn save(&mut self) -> Result<()> {
         self.record.thermo(self.simulation.thermo()?);
-        let mut checkpoint = self.simulation.checkpoint()?;
+        let mut checkpoint = self.simulation.checkpoint();
         checkpoint.config = self.config.to_toml()?;
         checkpoint.report = self.record.report_with(self.simulation.report());
         for observer in &mut self.observers {
