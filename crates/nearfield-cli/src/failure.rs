@@ -1,5 +1,6 @@
 //! Errors on their way to the user: one sentence on stderr, and the exit code.
 
+use crate::commands::print_note;
 use std::{fmt, process::ExitCode};
 
 /// Why a command failed.
@@ -24,7 +25,7 @@ impl Failure {
 
     /// Prints the message and gives the exit code.
     pub fn report(&self) -> ExitCode {
-        eprintln!("error: {}", self.message);
+        print_note(&format!("error: {}", self.message));
         ExitCode::from(if self.is_request { 2 } else { 1 })
     }
 }

@@ -113,6 +113,16 @@ impl Report {
     }
 }
 
+/// How an engine keeps the particles in memory. Sums in f32 depend on it, so a run that is to be continued bit for bit
+/// keeps it beside the particles.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MemoryOrder {
+    /// Input index of the particle at each place, `[N]`; empty for input order.
+    pub ids: Vec<u32>,
+    /// Step at which the particles were last sorted.
+    pub sorted_at: Option<u64>,
+}
+
 /// A device that holds a system and computes on it.
 ///
 /// Preconditions: the system passed [`System::validate`] and is wrapped; the plan's method is one of
@@ -145,6 +155,17 @@ pub trait Engine: Send {
     /// # Errors
     /// As [`Engine::evaluate`]; [`crate::Error::NonFinite`] when the run has blown up.
     fn advance(&mut self, dynamics: &Dynamics, from: u64, steps: u64, quantities: Quantities) -> Result<Totals>;
+
+    /// How the particles lie in memory. An engine that never moves them keeps this default.
+    fn memory_order(&self) -> MemoryOrder {
+        MemoryOrder::default()
+    }
+
+    /// Arranges the particles as another engine had them, right after [`Engine::load`] of its snapshot: both then
+    /// continue bit for bit alike. Precondition: `order.ids` is a permutation of the particles.
+    fn set_memory_order(&mut self, order: &MemoryOrder) {
+        let _ = order;
+    }
 
     /// Copies positions, velocities, types and image counts out.
     fn snapshot(&mut self, particles: &mut Particles);

@@ -31,18 +31,18 @@ pub enum Error {
         reason: String,
     },
     /// An input file without a box where one is needed.
-    #[error("{}: the file gives no box, which {why}; only open boundaries do without", path.display())]
+    #[error("{file}: the file gives no box, which {why}; only open boundaries do without")]
     NoBox {
-        /// The file.
-        path: PathBuf,
+        /// The file, or `standard input`.
+        file: String,
         /// What needs it.
         why: &'static str,
     },
     /// The particles of an input file do not fit the box or the interaction.
-    #[error("{}: {source}", path.display())]
+    #[error("{file}: {source}")]
     Input {
-        /// The file.
-        path: PathBuf,
+        /// The file, or `standard input`.
+        file: String,
         /// What is wrong.
         source: nearfield_core::Error,
     },
@@ -61,7 +61,10 @@ pub enum Error {
         step: u64,
     },
     /// The run failed; what it had written is kept.
-    #[error("{source}{}", checkpoint.map(|step| format!("; the last good checkpoint is of step {step}")).unwrap_or_default())]
+    #[error("{source}; {}", match checkpoint {
+        Some(step) => format!("the last good checkpoint is of step {step}"),
+        None => "no checkpoint had been written yet (output.checkpoint_every)".into(),
+    })]
     Failed {
         /// Why.
         source: Box<Error>,
@@ -75,7 +78,8 @@ impl Error {
     pub fn is_request(&self) -> bool {
         match self {
             Self::Interrupted { .. } | Self::Failed { .. } => false,
-            Self::Core(error) => !matches!(error, nearfield_core::Error::NonFinite { .. }),
+            // At step 0 nothing has run: the particles given overlap.
+            Self::Core(error) => !matches!(error, nearfield_core::Error::NonFinite { step: 1.., .. }),
             Self::Io(IoError::Read { .. }) => false,
             _ => true,
         }

@@ -37,12 +37,12 @@ pub use device::{DeviceStatus, devices, engine};
 pub use error::{Error, Result};
 pub use methods::{MethodSupport, methods};
 pub use nearfield_core::{
-    Boundary, Dynamics, Engine, Ensemble, Images, Interaction, ListKind, ListRequest, Maintenance, Method, Mixing,
-    NeighborList, Order, ParticleType, Particles, PerParticle, Plan, Quantities, Radii, Report, SimBox, System, Totals,
-    Truncation, Vec3s, interaction, potentials,
+    Boundary, Dynamics, Engine, Ensemble, Error as CoreError, Images, Interaction, ListKind, ListRequest, Maintenance,
+    Method, Mixing, NeighborList, Order, ParticleType, Particles, PerParticle, Plan, Quantities, Radii, Report, SimBox,
+    System, Totals, Truncation, Vec3s, interaction, potentials,
 };
 pub use search::{NeighborSearch, Neighbors, Pair};
-pub use setup::{file_system, system};
+pub use setup::{file_points, file_system, system};
 pub use simulation::{Progress, Simulation, SimulationBuilder};
 pub use thermo::Thermo;
 

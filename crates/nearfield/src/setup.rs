@@ -32,7 +32,30 @@ pub fn system(config: &Config) -> Result<System> {
 /// # Errors
 /// As [`system`].
 pub fn file_system(config: &Config, path: &Path, boundary: Option<[Boundary; 3]>) -> Result<System> {
-    let configuration = io::read(path, &io::ReadOptions::default())?;
+    configured(config, path, io::read(path, &io::ReadOptions::default())?, boundary)
+}
+
+/// The validated, wrapped particles of an input file for a search alone, with one cutoff where the file gives no
+/// radii: species and masses mean nothing. Boundaries are as in [`file_system`].
+///
+/// # Errors
+/// As [`system`].
+pub fn file_points(path: &Path, cutoff: f32, boundary: Option<[Boundary; 3]>) -> Result<System> {
+    let mut configuration = io::read(path, &io::ReadOptions::default())?;
+    let n = configuration.len();
+    configuration.species = io::Species { names: vec!["1".into()], of: vec![0; n] };
+    configuration.mass = None;
+    let mut config = Config::default();
+    config.interaction.cutoff = f64::from(cutoff);
+    configured(&config, path, configuration, boundary)
+}
+
+fn configured(
+    config: &Config,
+    path: &Path,
+    configuration: Configuration,
+    boundary: Option<[Boundary; 3]>,
+) -> Result<System> {
     let boundary = boundary.unwrap_or_else(|| match configuration.bounds {
         Some(bounds) => bounds
             .periodic
@@ -40,7 +63,7 @@ pub fn file_system(config: &Config, path: &Path, boundary: Option<[Boundary; 3]>
         None => [Boundary::Open; 3],
     });
     let mut system = assemble(config, path, configuration, boundary)?;
-    system.validate().map_err(|source| Error::Input { path: path.to_owned(), source })?;
+    system.validate().map_err(|source| Error::Input { file: io::input_name(path), source })?;
     system.wrap();
     Ok(system)
 }
@@ -51,7 +74,7 @@ fn assemble(config: &Config, path: &Path, configuration: Configuration, boundary
         Some(Bounds { lo, hi, .. }) => SimBox::new(lo, hi, boundary)?,
         None if boundary == [Boundary::Open; 3] => bounding_box(&configuration.position)?,
         None => {
-            return Err(Error::NoBox { path: path.to_owned(), why: "periodic and wall boundaries need" });
+            return Err(Error::NoBox { file: io::input_name(path), why: "periodic and wall boundaries need" });
         }
     };
     let kinds = config.interaction.match_species(&configuration.species.names)?;

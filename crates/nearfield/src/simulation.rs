@@ -296,32 +296,23 @@ impl Simulation {
         self.earlier.clone().followed_by(self.engine.report())
     }
 
-    /// The state to continue from. The running simulation reloads it too: sums in f32 depend on the memory order that
-    /// grew since the start, so that only then both continue bit for bit alike.
-    ///
-    /// # Errors
-    /// When the engine cannot be loaded.
-    pub fn checkpoint(&mut self) -> Result<Checkpoint> {
-        let (method, step) = (self.plan.method, self.step);
-        let checkpoint = Checkpoint::new(self.system(), method, step);
-        self.reload()?;
-        Ok(checkpoint)
+    /// The state to continue from, bit for bit.
+    pub fn checkpoint(&mut self) -> Checkpoint {
+        let (method, step, order) = (self.plan.method, self.step, self.engine.memory_order());
+        Checkpoint::new(self.system(), method, step, order)
     }
 
-    /// Continues from a checkpoint instead of the initial state.
+    /// Continues from a checkpoint of the same number of particles instead of the present state.
     ///
     /// # Errors
-    /// When the engine cannot be loaded.
+    /// When the checkpoint's system is not valid or the engine cannot be loaded.
     pub fn restore(&mut self, checkpoint: &Checkpoint) -> Result<()> {
-        checkpoint.apply(&mut self.system);
-        self.step = checkpoint.step;
-        self.in_step = true;
-        self.reload()
-    }
-
-    fn reload(&mut self) -> Result<()> {
+        checkpoint.apply(&mut self.system)?;
         self.earlier = self.report();
         self.engine.load(&self.system, &self.plan)?;
+        self.engine.set_memory_order(&checkpoint.order);
+        self.step = checkpoint.step;
+        self.in_step = true;
         self.thermo = None;
         Ok(())
     }

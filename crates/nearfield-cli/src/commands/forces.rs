@@ -1,17 +1,17 @@
 //! `nearfield forces`: one single-point evaluation.
 
-use super::{input_name, print_json, print_line};
+use super::{print_json, print_line};
 use crate::{
     arguments::{Forces, How},
     failure::Failure,
 };
 use nearfield::{
-    Engine, Method, PerParticle, Plan, Quantities, System,
+    Boundary, CoreError, Engine, Error, Method, PerParticle, Plan, Quantities, System,
     config::{Choice, Config},
     engine, file_system, io,
 };
 use serde::Serialize;
-use std::{path::Path, time::Instant};
+use std::time::Instant;
 
 /// What `--json` prints.
 #[derive(Serialize)]
@@ -43,12 +43,22 @@ pub fn run(arguments: &Forces) -> Result<(), Failure> {
         kind.sigma = arguments.sigma.unwrap_or(kind.sigma);
     }
     config.validate()?;
-    let system = read(&config, &arguments.input, &arguments.how, arguments.config.is_some())?;
+    if let Some(path) = arguments.output.as_ref().filter(|path| path.extension() != Some("csv".as_ref())) {
+        return Err(Failure::request(format!("{}: forces are written as .csv", path.display())));
+    }
+    // The boundaries of the command line, else of the configuration file, else of the input.
+    let configured = || arguments.config.as_ref().map(|_| config.boundary.axes());
+    let boundary: Option<[Boundary; 3]> = arguments.how.boundary.or_else(configured);
+    let system = file_system(&config, &arguments.input, boundary)?;
+    let of_input = |source| Error::Input { file: io::input_name(&arguments.input), source };
+    if system.particles.is_empty() {
+        return Err(of_input(CoreError::Empty).into());
+    }
     let mut engine = engine(arguments.how.device)?;
     let plan = plan(&mut *engine, &system, &arguments.how)?;
     let start = Instant::now();
     engine.load(&system, &plan)?;
-    let totals = engine.evaluate(Quantities::ALL)?;
+    let totals = engine.evaluate(Quantities::ALL).map_err(of_input)?;
     let seconds = start.elapsed().as_secs_f64();
     if let Some(path) = &arguments.output {
         let mut results = PerParticle::default();
@@ -74,19 +84,12 @@ pub fn run(arguments: &Forces) -> Result<(), Failure> {
         return print_json(&summary);
     }
     let Summary { n, pairs, potential_energy, virial, max_force, device, method, .. } = summary;
-    print_line(&format!("{}: {n} particles, {pairs} pairs within range", input_name(&arguments.input)));
+    print_line(&format!("{}: {n} particles, {pairs} pairs within range", io::input_name(&arguments.input)));
     print_line(&format!("potential energy {potential_energy}"));
     print_line(&format!("virial           {virial}"));
     print_line(&format!("largest force    {max_force}"));
     print_line(&format!("method {method} on {device}, {:.3} ms", seconds * 1e3));
     Ok(())
-}
-
-/// Reads the input with the boundaries asked for: those of the command line, else of the configuration file, else of
-/// the input.
-pub(super) fn read(config: &Config, path: &Path, how: &How, configured: bool) -> Result<System, Failure> {
-    let given = how.boundary.or_else(|| configured.then(|| config.boundary.axes()));
-    Ok(file_system(config, path, given)?)
 }
 
 /// The plan for a single evaluation. `auto` is `cell`: trying others would take longer than the evaluation.

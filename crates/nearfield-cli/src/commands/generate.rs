@@ -1,5 +1,6 @@
 //! `nearfield generate`.
 
+use super::print_note;
 use crate::{arguments::GenerateArguments, failure::Failure};
 use nearfield::{
     Interaction, Radii, System,
@@ -38,6 +39,6 @@ pub fn run(arguments: &GenerateArguments) -> Result<(), Failure> {
         configuration.velocity = None;
     }
     io::write(&arguments.output, &configuration)?;
-    eprintln!("wrote {n} particles to {}", arguments.output.display());
+    print_note(&format!("wrote {n} particles to {}", arguments.output.display()));
     Ok(())
 }

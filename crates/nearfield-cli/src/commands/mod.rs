@@ -8,10 +8,7 @@ pub mod neighbors;
 pub mod run;
 
 use serde::Serialize;
-use std::{
-    io::{self, Write},
-    path::Path,
-};
+use std::io::{self, Write};
 
 use crate::failure::Failure;
 
@@ -26,7 +23,7 @@ fn print_line(line: &str) {
     let _ = writeln!(io::stdout().lock(), "{line}");
 }
 
-/// The name of an input in messages.
-fn input_name(path: &Path) -> String {
-    if path == Path::new("-") { "standard input".into() } else { path.display().to_string() }
+/// Prints what is no result: to stderr, where a closed pipe is no error either.
+pub fn print_note(line: &str) {
+    let _ = writeln!(io::stderr().lock(), "{line}");
 }

@@ -1,11 +1,8 @@
 //! `nearfield neighbors`: every pair within a cutoff.
 
-use super::{
-    forces::{plan, read},
-    input_name, print_json, print_line,
-};
+use super::{forces::plan, print_json, print_line};
 use crate::{arguments::NeighborsArguments, failure::Failure};
-use nearfield::{ListKind, ListRequest, Method, NeighborList, config::Config, engine, io};
+use nearfield::{ListKind, ListRequest, Method, NeighborList, engine, file_points, io};
 use serde::Serialize;
 use std::time::Instant;
 
@@ -25,10 +22,8 @@ struct Summary {
 }
 
 pub fn run(arguments: &NeighborsArguments) -> Result<(), Failure> {
-    let mut config = Config::default();
-    config.interaction.cutoff = f64::from(arguments.cutoff);
     let writer = arguments.output.as_ref().map(|path| writer(path)).transpose()?;
-    let system = read(&config, &arguments.input, &arguments.how, false)?;
+    let system = file_points(&arguments.input, arguments.cutoff, arguments.how.boundary)?;
     let mut engine = engine(arguments.how.device)?;
     let plan = plan(&mut *engine, &system, &arguments.how)?;
     let kind = if arguments.half { ListKind::Half } else { ListKind::Full };
@@ -57,7 +52,7 @@ pub fn run(arguments: &NeighborsArguments) -> Result<(), Failure> {
         return print_json(&summary);
     }
     let Summary { pairs, min, max, mean, device, method, .. } = summary;
-    print_line(&format!("{}: {n} particles, {pairs} pairs within range", input_name(&arguments.input)));
+    print_line(&format!("{}: {n} particles, {pairs} pairs within range", io::input_name(&arguments.input)));
     print_line(&format!("neighbours of a particle: {min} to {max}, {mean:.3} on average"));
     print_line(&format!("method {method} on {device}, {:.3} ms", seconds * 1e3));
     Ok(())

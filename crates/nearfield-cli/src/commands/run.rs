@@ -1,6 +1,6 @@
 //! `nearfield run`: a simulation from a configuration file.
 
-use super::print_line;
+use super::{print_line, print_note};
 use crate::{arguments::Run as RunArguments, failure::Failure, progress::RunBar};
 use nearfield::{
     config::Config,
@@ -26,11 +26,11 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     let run = if arguments.resume { Run::resume(config)? } else { Run::new(config)? };
     let simulation = run.simulation();
     if let Some(moved) = run.moved() {
-        eprintln!("an earlier run in {} was moved to {}", output.display(), moved.display());
+        print_note(&format!("an earlier run in {} was moved to {}", output.display(), moved.display()));
     }
-    eprintln!("{} particles on {}", simulation.n_particles(), simulation.device());
+    print_note(&format!("{} particles on {}", simulation.n_particles(), simulation.device()));
     let choice = simulation.choice();
-    eprintln!("method {}: {}", choice.method, choice.reason);
+    print_note(&format!("method {}: {}", choice.method, choice.reason));
     let bar = RunBar::new(simulation.step(), last_step, simulation.n_particles());
     let stop = stop_on_interrupt();
     let outcome = run.execute(&mut |progress| {
@@ -74,10 +74,10 @@ fn stop_on_interrupt() -> Arc<AtomicBool> {
         if seen.swap(true, Relaxed) {
             std::process::exit(1);
         }
-        eprintln!("\ninterrupted: finishing the step and writing a checkpoint (again to quit at once)");
+        print_note("\ninterrupted: finishing the step and writing a checkpoint (again to quit at once)");
     };
     if let Err(error) = ctrlc::set_handler(handler) {
-        eprintln!("warning: Ctrl-C will not write a checkpoint: {error}");
+        print_note(&format!("warning: Ctrl-C will not write a checkpoint: {error}"));
     }
     stop
 }
@@ -113,10 +113,10 @@ fn summarise(record: &Record, output: &Path) {
         report.integrate_seconds
     ));
     if report.dangerous_builds > 0 {
-        eprintln!(
+        print_note(&format!(
             "warning: {} of {} lists lasted one step only; no pair was missed, but a larger method.skin would be faster",
             report.dangerous_builds, report.list_builds
-        );
+        ));
     }
     print_line(&format!("output in {}", output.display()));
 }

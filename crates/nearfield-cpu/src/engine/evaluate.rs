@@ -36,8 +36,9 @@ pub(super) struct Loaded {
     pub record_history: bool,
     /// Whether the forces belong to the present positions.
     pub forces_valid: bool,
-    /// Evaluations since particles were last reordered.
-    since_reorder: u64,
+    /// Step at which particles were last reordered. The time of the next reordering must not depend on how often a
+    /// step was evaluated: it would tell a resumed run from an uninterrupted one.
+    pub sorted_at: Option<u64>,
 }
 
 impl Loaded {
@@ -54,7 +55,7 @@ impl Loaded {
             report: Report::default(),
             record_history: false,
             forces_valid: false,
-            since_reorder: reorder::INTERVAL,
+            sorted_at: None,
             physics,
         }
     }
@@ -62,7 +63,7 @@ impl Loaded {
     /// Computes forces, and what else is asked for, at the present positions, which belong to `step`.
     pub fn evaluate(&mut self, quantities: Quantities, step: u64) -> Result<()> {
         self.forces_valid = false;
-        self.prepare();
+        self.prepare(step);
         self.results.prepare(self.state.len(), quantities.energy);
         let watch = NonFiniteWatch::default();
         let start = Instant::now();
@@ -105,20 +106,19 @@ impl Loaded {
         Ok(())
     }
 
-    /// Brings structure and list up to date with the positions.
-    pub fn prepare(&mut self) {
-        self.since_reorder += 1;
+    /// Brings structure and list up to date with the positions of `step`.
+    pub fn prepare(&mut self, step: u64) {
         if self.plan.method.uses_list() && self.list.is_fresh(&self.state, &self.physics) {
             return;
         }
         let motion = if self.upkeep.needs_motion() { self.motion() } else { Motion::default() };
         let action = self.upkeep.next(motion);
-        if action == Action::Build && self.since_reorder >= reorder::INTERVAL {
+        if action == Action::Build && self.sorted_at.is_none_or(|then| step >= then + reorder::INTERVAL) {
             if let Some(order) = reorder::order(self.plan.order, &self.state, &self.physics) {
                 self.state.reorder(&order);
                 self.results.reorder(&order);
             }
-            self.since_reorder = 0;
+            self.sorted_at = Some(step);
         }
         let radii = self.list.radii(&self.state, &self.physics);
         let input = self.state.input(&self.physics, radii);

@@ -15,7 +15,7 @@ use crate::InputRadii;
 use evaluate::Loaded;
 use nearfield_core::{
     Dynamics, Engine, Error, ListRequest, NeighborList, Particles, PerParticle, Plan, Quantities, Radii, Report,
-    Result, System, Totals,
+    Result, System, Totals, engine::MemoryOrder,
 };
 
 /// The engine that runs on the threads of the CPU (the current rayon pool).
@@ -86,6 +86,18 @@ impl Engine for CpuEngine {
 
     fn advance(&mut self, dynamics: &Dynamics, from: u64, steps: u64, quantities: Quantities) -> Result<Totals> {
         self.loaded()?.advance(dynamics, from, steps, quantities)
+    }
+
+    fn memory_order(&self) -> MemoryOrder {
+        let order = |loaded: &Loaded| MemoryOrder { ids: loaded.state.id.clone(), sorted_at: loaded.sorted_at };
+        self.loaded.as_deref().map(order).unwrap_or_default()
+    }
+
+    fn set_memory_order(&mut self, order: &MemoryOrder) {
+        if let Some(loaded) = self.loaded.as_deref_mut().filter(|_| !order.ids.is_empty()) {
+            loaded.state.reorder(&order.ids);
+            loaded.sorted_at = order.sorted_at;
+        }
     }
 
     fn snapshot(&mut self, particles: &mut Particles) {

@@ -5,7 +5,7 @@ use crate::{Grid, Structure, bvh::CurveOrder, physics::Physics};
 use nearfield_core::Order;
 use rayon::prelude::*;
 
-/// Evaluations between reorderings: sorting costs a few evaluations' time, and locality decays slowly.
+/// Steps between reorderings: sorting costs a few evaluations' time, and locality decays slowly.
 pub(super) const INTERVAL: u64 = 100;
 
 /// The permutation that puts particle `order[k]` at place k; `None` when the order is to stay.

@@ -52,7 +52,7 @@ impl Loaded {
         let mut next = NextState::default();
         for step in from + 1..from + steps {
             self.forces_valid = false;
-            self.prepare();
+            self.prepare(step);
             let forces = NonFiniteWatch::default();
             let positions = NonFiniteWatch::default();
             next.prepare(&self.state);

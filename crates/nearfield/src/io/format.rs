@@ -61,6 +61,11 @@ pub struct ReadOptions {
     pub frame: Frame,
 }
 
+/// The name of an input in messages: `standard input` for `-`.
+pub fn input_name(path: &Path) -> String {
+    if path == Path::new("-") { "standard input".into() } else { path.display().to_string() }
+}
+
 /// Reads particles from a file, or from standard input where `path` is `-`.
 ///
 /// # Errors
@@ -69,11 +74,11 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Configurati
     let path = path.as_ref();
     if path == Path::new("-") {
         let format = options.format.unwrap_or(Format::ExtendedXyz);
-        return read_from(io::stdin().lock(), "standard input", format, options.frame);
+        return read_from(io::stdin().lock(), &input_name(path), format, options.frame);
     }
     let format = options.format.map_or_else(|| Format::of(path), Ok)?;
     let file = File::open(path).map_err(|source| IoError::Open { path: path.to_owned(), source })?;
-    read_from(BufReader::with_capacity(1 << 18, file), &path.display().to_string(), format, options.frame)
+    read_from(BufReader::with_capacity(1 << 18, file), &input_name(path), format, options.frame)
 }
 
 fn read_from(input: impl BufRead, name: &str, format: Format, frame: Frame) -> Result<Configuration> {

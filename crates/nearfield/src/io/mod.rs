@@ -33,6 +33,6 @@ pub use atomic_write::atomic_write;
 pub use configuration::{Bounds, Configuration, Species};
 pub use error::{IoError, Problem, Result};
 pub use extended_xyz::Frames;
-pub use format::{Format, Frame, ReadOptions, read, write};
+pub use format::{Format, Frame, ReadOptions, input_name, read, write};
 pub use tables::{write_forces_csv, write_pairs_csv, write_pairs_npz};
 pub use trajectory::Trajectory;

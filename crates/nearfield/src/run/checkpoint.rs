@@ -1,12 +1,12 @@
 //! Checkpoints: everything a run needs to continue, in MessagePack.
 
 use crate::{Error, Result, config::Config, io::atomic_write};
-use nearfield_core::{Method, Particles, Radii, Report, SimBox, System};
+use nearfield_core::{Method, Particles, Radii, Report, SimBox, System, engine::MemoryOrder};
 use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, fs, path::Path};
 
 /// Version of the layout below.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 
 /// The state of a run between two steps.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -24,6 +24,8 @@ pub struct Checkpoint {
     pub particles: Particles,
     /// Ranges.
     pub radii: Radii,
+    /// How the particles lay in memory.
+    pub order: MemoryOrder,
     /// What was done so far.
     pub report: Report,
     /// What observers saved, by name.
@@ -32,7 +34,7 @@ pub struct Checkpoint {
 
 impl Checkpoint {
     /// The state of a system after `step`.
-    pub fn new(system: &System, method: Method, step: u64) -> Self {
+    pub fn new(system: &System, method: Method, step: u64, order: MemoryOrder) -> Self {
         Self {
             format: FORMAT,
             config: String::new(),
@@ -41,16 +43,42 @@ impl Checkpoint {
             sim_box: system.sim_box,
             particles: system.particles.clone(),
             radii: system.radii.clone(),
+            order,
             report: Report::default(),
             observers: BTreeMap::new(),
         }
     }
 
     /// Puts the saved state into a system, whose interaction stays.
-    pub fn apply(&self, system: &mut System) {
-        system.sim_box = self.sim_box;
-        system.particles = self.particles.clone();
-        system.radii = self.radii.clone();
+    ///
+    /// # Errors
+    /// As [`System::validate`]; the system is then unchanged.
+    pub fn apply(&self, system: &mut System) -> Result<()> {
+        let saved = System {
+            sim_box: self.sim_box,
+            particles: self.particles.clone(),
+            radii: self.radii.clone(),
+            interaction: system.interaction.clone(),
+        };
+        saved.validate()?;
+        self.check_order()?;
+        *system = saved;
+        Ok(())
+    }
+
+    /// The memory order must name each particle once.
+    fn check_order(&self) -> Result<()> {
+        let (n, ids) = (self.particles.len(), &self.order.ids);
+        if ids.is_empty() {
+            return Ok(());
+        }
+        let mut seen = vec![false; n];
+        let is_new = |&id: &u32| seen.get_mut(id as usize).is_some_and(|seen| !std::mem::replace(seen, true));
+        if ids.len() == n && ids.iter().all(is_new) {
+            return Ok(());
+        }
+        let reason = "must hold each particle once";
+        Err(nearfield_core::Error::InvalidParameter { name: "memory order", value: format!("{} ids", ids.len()), reason }.into())
     }
 
     /// Writes the file, whole or not at all.

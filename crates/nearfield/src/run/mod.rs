@@ -45,7 +45,9 @@ impl Run {
             Choice::Auto => None,
             Choice::Of(method) => Some(method),
         };
-        let simulation = simulation(&config, method)?;
+        let mut simulation = simulation(&config, method)?;
+        // Forces that cannot be are found before the directory is touched.
+        simulation.thermo()?;
         let moved = directory::prepare(&config.output.directory)?;
         let record = Record::new(&config, &simulation);
         Ok(Self { observers: observers(&config), config, simulation, record, saved: None, moved })
@@ -59,9 +61,10 @@ impl Run {
     pub fn resume(config: Config) -> Result<Self> {
         let path = config.output.directory.join(CHECKPOINT);
         let checkpoint = Checkpoint::read(&path)?;
-        checkpoint.check(&config).map_err(|reason| Error::Resume { path: path.clone(), reason })?;
+        let refused = |reason: String| Error::Resume { path: path.clone(), reason };
+        checkpoint.check(&config).map_err(refused)?;
         let mut simulation = simulation(&config, Some(checkpoint.method))?;
-        simulation.restore(&checkpoint)?;
+        simulation.restore(&checkpoint).map_err(|error| refused(error.to_string()))?;
         let mut observers = observers(&config);
         for observer in &mut observers {
             if let Some(saved) = checkpoint.observers.get(observer.name()) {
@@ -101,7 +104,8 @@ impl Run {
                 Err(Error::Interrupted { step })
             }
             Err(source) => {
-                self.write_record(Status::Failed(source.to_string()))?;
+                self.record.error = Some(source.to_string());
+                self.write_record(Status::Failed)?;
                 Err(Error::Failed { source: Box::new(source), checkpoint: self.saved })
             }
         }
@@ -123,7 +127,7 @@ impl Run {
 
     fn save(&mut self) -> Result<()> {
         self.record.thermo(self.simulation.thermo()?);
-        let mut checkpoint = self.simulation.checkpoint()?;
+        let mut checkpoint = self.simulation.checkpoint();
         checkpoint.config = self.config.to_toml()?;
         checkpoint.report = self.record.report_with(self.simulation.report());
         for observer in &mut self.observers {

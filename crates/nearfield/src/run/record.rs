@@ -6,7 +6,7 @@ use serde::Serialize;
 use std::{path::Path, time::Instant};
 
 /// How a run stands.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Status {
     /// Under way, or killed.
@@ -16,7 +16,7 @@ pub enum Status {
     /// Stopped by the user; a checkpoint was written.
     Interrupted,
     /// Stopped by an error.
-    Failed(String),
+    Failed,
 }
 
 /// The content of run.json.
@@ -26,6 +26,8 @@ pub struct Record {
     pub version: &'static str,
     /// How it went.
     pub status: Status,
+    /// What stopped a failed run.
+    pub error: Option<String>,
     /// The device.
     pub device: String,
     /// The method and why it was chosen.
@@ -64,6 +66,7 @@ impl Record {
         Self {
             version: env!("CARGO_PKG_VERSION"),
             status: Status::Running,
+            error: None,
             device: simulation.device(),
             method: simulation.choice().clone(),
             plan: *simulation.plan(),

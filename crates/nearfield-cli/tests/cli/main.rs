@@ -1,0 +1,8 @@
+//! The command as its users meet it: exit codes, messages, files.
+
+mod bad_input;
+mod command;
+mod evaluate;
+mod listings;
+mod resume;
+mod run;
