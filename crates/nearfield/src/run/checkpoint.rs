@@ -78,7 +78,12 @@ impl Checkpoint {
             return Ok(());
         }
         let reason = "must hold each particle once";
-        Err(nearfield_core::Error::InvalidParameter { name: "memory order", value: format!("{} ids", ids.len()), reason }.into())
+        Err(nearfield_core::Error::InvalidParameter {
+            name: "memory order",
+            value: format!("{} ids", ids.len()),
+            reason,
+        }
+        .into())
     }
 
     /// Writes the file, whole or not at all.
