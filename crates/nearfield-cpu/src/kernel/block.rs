@@ -30,7 +30,6 @@ pub(super) struct Block<'a> {
 
 /// Adds what the block's neighbours contribute to the query. Without `SHIFTED`, shifts are zero and not read.
 #[inline(always)]
-#[expect(clippy::needless_range_loop, reason = "iterators over ten arrays keep the loop from being vectorised")]
 pub(super) fn evaluate<L: PairLaw, C: Coefficients, A: Accumulator, const ENERGY: bool, const SHIFTED: bool>(
     law: &L,
     coefficients: &C,

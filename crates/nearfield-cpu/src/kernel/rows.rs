@@ -112,7 +112,6 @@ impl<L: PairLaw, C: Coefficients> lanes::Kernel for Kernel<'_, L, C> {
 impl<L: PairLaw, C: Coefficients> Kernel<'_, L, C> {
     /// Evaluates the first `LANES` entries; lanes past the end are padding.
     #[inline(always)]
-    #[expect(clippy::needless_range_loop, reason = "a flat loop over lanes, as in the other kernels")]
     fn block(&self, query: &Query, i: usize, indices: &[u32], images: &[[i8; 3]], sums: &mut Exact) {
         let (mut x, mut y, mut z) = ([Slots::FAR; LANES], [0.0; LANES], [0.0; LANES]);
         let (mut radius, mut kind, mut particle) = ([0.0; LANES], [0; LANES], [u32::MAX; LANES]);
