@@ -14,16 +14,16 @@ pub enum Ensemble {
     Nve,
     /// Langevin dynamics in the BAOAB splitting (Leimkuhler and Matthews, 2013).
     Langevin {
-        /// Target temperature, [energy].
+        /// Target temperature, \[energy\].
         temperature: f64,
-        /// Friction rate, [1/time].
+        /// Friction rate, \[1/time\].
         friction: f64,
     },
     /// Stochastic velocity rescaling (Bussi, Donadio and Parrinello, 2007) after each velocity Verlet step.
     Rescale {
-        /// Target temperature, [energy].
+        /// Target temperature, \[energy\].
         temperature: f64,
-        /// Relaxation time, [time].
+        /// Relaxation time, \[time\].
         relaxation: f64,
     },
 }
@@ -31,11 +31,11 @@ pub enum Ensemble {
 /// How particles move.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Dynamics {
-    /// Time step, [time].
+    /// Time step, \[time\].
     pub dt: f32,
     /// Ensemble.
     pub ensemble: Ensemble,
-    /// Longest distance a particle may move in a step, [length]; 0 is no limit. With a limit, forces that overflow
+    /// Longest distance a particle may move in a step, \[length\]; 0 is no limit. With a limit, forces that overflow
     /// are capped, so that starts with overlapping or coincident particles can run.
     pub max_displacement: f32,
     /// Seed of the thermostats' random numbers.

@@ -40,7 +40,7 @@ pub struct NeighborList {
     pub indices: Vec<u32>,
     /// Periodic image of each neighbour, `[P]`, where asked for: `dr = (x_j - x_i) + image * box length`.
     pub shifts: Option<Vec<[i8; 3]>>,
-    /// Distances, `[P]`, [length], where asked for.
+    /// Distances, `[P]`, \[length\], where asked for.
     pub distances: Option<Vec<f32>>,
 }
 

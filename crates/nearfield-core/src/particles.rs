@@ -9,9 +9,9 @@ use serde::{Deserialize, Serialize};
 /// everything back in this order.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Particles {
-    /// Positions, [length], inside the box on periodic axes.
+    /// Positions, \[length\], inside the box on periodic axes.
     pub position: Vec3s,
-    /// Velocities, [length/time].
+    /// Velocities, \[length/time\].
     pub velocity: Vec3s,
     /// Index of each particle's type in `Interaction::types`.
     pub kind: Vec<u32>,

@@ -110,7 +110,7 @@ pub struct Plan {
     pub order: Order,
     /// When a BVH is rebuilt rather than refitted.
     pub maintenance: Maintenance,
-    /// Verlet skin of list methods, [length]; 0 builds the list at each step.
+    /// Verlet skin of list methods, \[length\]; 0 builds the list at each step.
     pub skin: f32,
     /// Sum forces independently of order, so that results are bitwise equal across methods and thread counts.
     /// BVH methods always do; `cell` and `brute` are faster without.

@@ -3,7 +3,7 @@
 use crate::{Error, Result, SimBox};
 use serde::{Deserialize, Serialize};
 
-/// Search radii, [length]. The range of a pair is `max(r_i, r_j)`.
+/// Search radii, \[length\]. The range of a pair is `max(r_i, r_j)`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Radii {
     /// One cutoff for every pair.

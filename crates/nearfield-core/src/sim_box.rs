@@ -36,7 +36,7 @@ pub struct SimBox {
 }
 
 impl SimBox {
-    /// A box from its bounds, [length].
+    /// A box from its bounds, \[length\].
     ///
     /// # Errors
     /// [`Error::InvalidBox`] when a bound is not finite or a length is not positive.
@@ -58,12 +58,12 @@ impl SimBox {
         Self::new([0.0; 3], [length; 3], [boundary; 3])
     }
 
-    /// Lower corner, [length].
+    /// Lower corner, \[length\].
     pub fn lo(&self) -> [f32; 3] {
         self.lo
     }
 
-    /// Upper corner, [length].
+    /// Upper corner, \[length\].
     pub fn hi(&self) -> [f32; 3] {
         self.hi
     }
@@ -90,12 +90,12 @@ impl SimBox {
         std::array::from_fn(|axis| self.hi[axis] - self.lo[axis])
     }
 
-    /// Volume, [length³].
+    /// Volume, \[length³\].
     pub fn volume(&self) -> f64 {
         self.lengths().iter().map(|&l| f64::from(l)).product()
     }
 
-    /// The translation of periodic image `image`, [length].
+    /// The translation of periodic image `image`, \[length\].
     #[inline(always)]
     pub fn shift(&self, image: [i8; 3]) -> [f32; 3] {
         let lengths = self.lengths();

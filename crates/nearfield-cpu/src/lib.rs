@@ -6,6 +6,7 @@
 
 mod brute;
 mod bvh;
+mod candidates;
 mod engine;
 mod exact_sum;
 mod grid;

@@ -1,14 +1,13 @@
 //! Splitting work over threads.
 
-use crate::Run;
 use rayon::prelude::*;
 use std::{cell::UnsafeCell, ops::Range};
 
-/// Calls `work` for consecutive ranges that cover `0..n`, with a buffer for runs that is reused within a thread.
-pub(crate) fn for_each_chunk(n: usize, chunk: usize, work: impl Fn(Range<usize>, &mut Vec<Run>) + Sync) {
+/// Calls `work` for consecutive ranges that cover `0..n`, with buffers that are reused within a thread.
+pub(crate) fn for_each_chunk<B: Default>(n: usize, chunk: usize, work: impl Fn(Range<usize>, &mut B) + Sync) {
     (0..n.div_ceil(chunk))
         .into_par_iter()
-        .for_each_init(Vec::new, |runs, c| work(c * chunk..((c + 1) * chunk).min(n), runs));
+        .for_each_init(B::default, |buffers, c| work(c * chunk..((c + 1) * chunk).min(n), buffers));
 }
 
 /// A slice that several threads write to at indices that never meet.

@@ -45,3 +45,8 @@ pub use search::{NeighborSearch, Neighbors, Pair};
 pub use setup::{file_points, file_system, system};
 pub use simulation::{Progress, Simulation, SimulationBuilder};
 pub use thermo::Thermo;
+
+/// The examples of the README, tested.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

@@ -32,7 +32,7 @@ pub struct NeighborSearch {
 }
 
 impl NeighborSearch {
-    /// Indexes points with one cutoff for all pairs, [length].
+    /// Indexes points with one cutoff for all pairs, \[length\].
     ///
     /// # Errors
     /// [`nearfield_core::Error`]: a coordinate that is not finite or outside walls (named by the point's index), a

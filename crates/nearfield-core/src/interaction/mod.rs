@@ -32,11 +32,11 @@ pub enum Truncation {
 pub struct ParticleType {
     /// Matches type ids of LAMMPS data files and the species column of extended XYZ.
     pub name: String,
-    /// Energy scale, [energy].
+    /// Energy scale, \[energy\].
     pub epsilon: f32,
-    /// Length scale, [length].
+    /// Length scale, \[length\].
     pub sigma: f32,
-    /// Mass, [mass].
+    /// Mass, \[mass\].
     pub mass: f32,
 }
 

@@ -23,10 +23,10 @@ use std::sync::Arc;
 
 /// An untruncated pair potential, in f32 for the kernels and f64 for the oracle by one definition.
 pub trait PairPotential: Clone + Send + Sync {
-    /// `-(1/r) dU/dr` at squared distance `r2`, [energy/length²]. The force on i is `-f_over_r * dr`.
+    /// `-(1/r) dU/dr` at squared distance `r2`, \[energy/length²\]. The force on i is `-f_over_r * dr`.
     fn f_over_r<T: Real>(&self, r2: T, epsilon: T, sigma: T) -> T;
 
-    /// `U` at squared distance `r2`, [energy].
+    /// `U` at squared distance `r2`, \[energy\].
     fn energy<T: Real>(&self, r2: T, epsilon: T, sigma: T) -> T;
 }
 

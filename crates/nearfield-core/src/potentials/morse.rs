@@ -5,7 +5,7 @@ use super::{PairPotential, Real};
 /// Anharmonic bond-like attraction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Morse {
-    /// Width parameter α, [1/length].
+    /// Width parameter α, \[1/length\].
     pub alpha: f32,
 }
 

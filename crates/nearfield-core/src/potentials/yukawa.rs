@@ -5,7 +5,7 @@ use super::{PairPotential, Real};
 /// Screened repulsion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Yukawa {
-    /// Inverse screening length κ, [1/length].
+    /// Inverse screening length κ, \[1/length\].
     pub kappa: f32,
 }
 

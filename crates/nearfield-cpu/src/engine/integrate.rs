@@ -65,6 +65,7 @@ impl Integrator {
 
     /// First half kick and drift of `step`.
     #[inline(always)]
+    #[expect(clippy::needless_range_loop, reason = "one axis of several vectors")]
     pub fn start(&self, p: &mut Moving, force: [f32; 3], kind: u32, id: u32, step: u64) {
         self.kick(p, force, kind);
         self.limit(p);
@@ -90,6 +91,7 @@ impl Integrator {
     }
 
     #[inline(always)]
+    #[expect(clippy::needless_range_loop, reason = "one axis of several vectors")]
     fn kick(&self, p: &mut Moving, force: [f32; 3], kind: u32) {
         let half_kick = self.half_kick[kind as usize];
         for axis in 0..3 {
@@ -125,6 +127,7 @@ impl Integrator {
 
     /// Wraps on periodic axes and reflects at walls.
     #[cold]
+    #[expect(clippy::needless_range_loop, reason = "one axis of several vectors")]
     fn apply_boundaries(&self, p: &mut Moving) {
         let (wrapped, crossings) = self.sim_box.wrap(p.position);
         p.position = wrapped;

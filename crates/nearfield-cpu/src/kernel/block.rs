@@ -13,8 +13,9 @@ use nearfield_core::{
 /// Lanes of one quantity.
 pub(super) type Lanes<T> = [T; LANES];
 
-/// Candidates of a block. Arrays are read whatever the mask says, so they must hold finite numbers.
-pub(super) struct Candidates<'a> {
+/// Candidates of a block; padding lanes are at [`crate::Slots::FAR`]. Arrays are read whatever the predicate says, so
+/// they must hold finite numbers.
+pub(super) struct Block<'a> {
     pub x: &'a Lanes<f32>,
     pub y: &'a Lanes<f32>,
     pub z: &'a Lanes<f32>,
@@ -22,34 +23,31 @@ pub(super) struct Candidates<'a> {
     pub radius: &'a Lanes<f32>,
     /// Anything when there is one type.
     pub kind: &'a Lanes<u32>,
+    pub particle: &'a Lanes<u32>,
     /// `image * box length`, added to each displacement; a lane each where images differ.
     pub shift: &'a [Lanes<f32>; 3],
-    /// Lanes at or beyond this are not part of the run.
-    pub valid: u32,
-    /// The lane that is the query itself, if below `LANES`.
-    pub own: u32,
 }
 
-/// Adds what the block's neighbours contribute to the query.
+/// Adds what the block's neighbours contribute to the query. Without `SHIFTED`, shifts are zero and not read.
 #[inline(always)]
-pub(super) fn evaluate<L: PairLaw, C: Coefficients, A: Accumulator, const ENERGY: bool>(
+pub(super) fn evaluate<L: PairLaw, C: Coefficients, A: Accumulator, const ENERGY: bool, const SHIFTED: bool>(
     law: &L,
     coefficients: &C,
     cap: f32,
     query: &Query,
-    c: &Candidates,
+    c: &Block,
     sums: &mut A,
 ) {
     for l in 0..LANES {
-        let candidate = [c.x[l], c.y[l], c.z[l]];
-        let dr = predicate::displacement(query.position, candidate, [c.shift[0][l], c.shift[1][l], c.shift[2][l]]);
+        let shift = if SHIFTED { [c.shift[0][l], c.shift[1][l], c.shift[2][l]] } else { [0.0; 3] };
+        let dr = predicate::displacement(query.position, [c.x[l], c.y[l], c.z[l]], shift);
         let r2 = predicate::squared_length(dr);
         let range = if C::VARIABLE_RANGE { query.radius.max(c.radius[l]) } else { query.radius };
         let kind = if C::TYPED { c.kind[l] } else { 0 };
-        let inside = predicate::is_neighbor(r2, range) & ((l as u32) < c.valid) & (l as u32 != c.own);
+        let inside = predicate::is_neighbor(r2, range) & (c.particle[l] != query.particle);
         let pair = coefficients.get(query.kind, kind, range);
         let f = law.f_over_r(r2, &pair);
-        // Not `min`, which costs three instructions for NaN: that becomes the cap here, and 0/0 again when dr = 0.
+        // Not `min`, which costs three instructions for NaN: that becomes the cap here, and NaN again times dr = 0.
         let f = if f < cap { f } else { cap };
         let f = if inside { f } else { 0.0 };
         sums.add_force(l, -(f * dr[0]), -(f * dr[1]), -(f * dr[2]));

@@ -1,19 +1,20 @@
 //! Kernels: test a group's candidates by the predicate and turn the pairs into forces and energies.
 //!
 //! Each kernel is one generic function over the pair law, its coefficients and the way of summing, written as plain
-//! loops over [`LANES`](crate::LANES) that the compiler vectorises, and run under the widest instruction set of the
-//! machine by `pulp`. Measured on Zen 4 (AVX-512): 2.1e9 slots/s a core for Lennard-Jones, half of the register-only
-//! limit of hand-written code.
+//! loops over [`LANES`](crate::LANES) that the compiler vectorises, and compiled for each instruction set by
+//! [`crate::lanes`].
 
 mod accumulate;
 mod block;
 mod gather;
+mod group;
 mod rows;
 mod scatter;
 mod select;
 
 pub(crate) use accumulate::Grain;
-pub(crate) use gather::{Finish, gather};
+use block::evaluate;
+pub(crate) use gather::gather;
 pub(crate) use rows::{RowSource, gather_rows};
 pub(crate) use scatter::{ScatterSums, scatter};
 
@@ -30,10 +31,14 @@ pub(crate) struct Sums {
     pub neighbors: u32,
 }
 
+/// Receives the sums of each particle, once, in no particular order and from any thread.
+pub(crate) type Finish<'a> = &'a (dyn Fn(u32, &Sums) + Sync);
+
 /// A particle whose candidates are tested.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Query {
     pub position: [f32; 3],
     pub radius: f32,
     pub kind: u32,
+    pub particle: u32,
 }

@@ -3,15 +3,19 @@
 use super::{
     Finish, Query,
     accumulate::{Exact, Summing},
-    block::{Candidates, evaluate},
+    block::Block,
+    evaluate,
     select::with_law,
 };
-use crate::{Input, InputRadii, LANES, Rows, physics::Physics};
+use crate::{
+    Input, InputRadii, LANES, Rows, Slots,
+    lanes::{self, Isa},
+    physics::Physics,
+};
 use nearfield_core::{
     NeighborList,
     interaction::{Coefficients, PairLaw},
 };
-use pulp::{Arch, NullaryFnOnce};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -66,7 +70,7 @@ pub(crate) fn gather_rows(physics: &Physics, input: &Input, rows: RowSource, fin
     with_law!(physics, law, coefficients => {
         (0..n_rows.div_ceil(ROWS_PER_TASK)).into_par_iter().for_each(|c| {
             let range = c * ROWS_PER_TASK..((c + 1) * ROWS_PER_TASK).min(n_rows);
-            Arch::new().dispatch(Kernel { input, rows, range, physics, law, coefficients, finish });
+            Isa::detect().run(Kernel { input, rows, range, physics, law, coefficients, finish });
         });
     });
 }
@@ -81,11 +85,11 @@ struct Kernel<'a, L, C> {
     finish: Finish<'a>,
 }
 
-impl<L: PairLaw, C: Coefficients> NullaryFnOnce for Kernel<'_, L, C> {
+impl<L: PairLaw, C: Coefficients> lanes::Kernel for Kernel<'_, L, C> {
     type Output = ();
 
     #[inline(always)]
-    fn call(self) {
+    fn run<S: lanes::Lanes>(self, _: S) {
         for k in self.range.clone() {
             let (particle, indices, images) = self.rows.row(k);
             let i = particle as usize;
@@ -93,6 +97,7 @@ impl<L: PairLaw, C: Coefficients> NullaryFnOnce for Kernel<'_, L, C> {
                 position: self.input.at(i),
                 radius: self.input.radius(i),
                 kind: self.input.kind.get(i).copied().unwrap_or(0),
+                particle,
             };
             let mut sums = Exact::new(self.physics.grain);
             for start in (0..indices.len()).step_by(LANES) {
@@ -105,19 +110,17 @@ impl<L: PairLaw, C: Coefficients> NullaryFnOnce for Kernel<'_, L, C> {
 }
 
 impl<L: PairLaw, C: Coefficients> Kernel<'_, L, C> {
-    /// Evaluates the first `LANES` entries; lanes past the end repeat the last entry and are masked.
+    /// Evaluates the first `LANES` entries; lanes past the end are padding.
     #[inline(always)]
     fn block(&self, query: &Query, i: usize, indices: &[u32], images: &[[i8; 3]], sums: &mut Exact) {
-        let mut position = [[0.0; LANES]; 3];
-        let (mut radius, mut kind) = ([0.0; LANES], [0; LANES]);
+        let (mut x, mut y, mut z) = ([Slots::FAR; LANES], [0.0; LANES], [0.0; LANES]);
+        let (mut radius, mut kind, mut particle) = ([0.0; LANES], [0; LANES], [u32::MAX; LANES]);
         let mut shift = [[0.0; LANES]; 3];
         let lengths = self.physics.sim_box.lengths();
-        for l in 0..LANES {
-            let entry = l.min(indices.len() - 1);
-            let j = indices[entry] as usize;
-            for axis in 0..3 {
-                position[axis][l] = self.input.position[axis][j];
-            }
+        for l in 0..indices.len().min(LANES) {
+            let j = indices[l] as usize;
+            [x[l], y[l], z[l]] = self.input.at(j);
+            particle[l] = indices[l];
             if let InputRadii::PerParticle(radii) = self.input.radii {
                 radius[l] = radii[j];
             }
@@ -125,22 +128,14 @@ impl<L: PairLaw, C: Coefficients> Kernel<'_, L, C> {
                 kind[l] = self.input.kind[j];
             }
             if !images.is_empty() {
-                let (image, of_i, of_j) = (images[entry], self.rows.crossings(i), self.rows.crossings(j));
+                let (image, of_i, of_j) = (images[l], self.rows.crossings(i), self.rows.crossings(j));
                 for axis in 0..3 {
                     shift[axis][l] = f32::from(image[axis] + of_j[axis] - of_i[axis]) * lengths[axis];
                 }
             }
         }
-        let candidates = Candidates {
-            x: &position[0],
-            y: &position[1],
-            z: &position[2],
-            radius: &radius,
-            kind: &kind,
-            shift: &shift,
-            valid: indices.len().min(LANES) as u32,
-            own: u32::MAX,
-        };
-        evaluate::<L, C, _, true>(self.law, self.coefficients, self.physics.cap, query, &candidates, sums);
+        let (law, coefficients, cap) = (self.law, self.coefficients, self.physics.cap);
+        let block = Block { x: &x, y: &y, z: &z, radius: &radius, kind: &kind, particle: &particle, shift: &shift };
+        evaluate::<L, C, _, true, true>(law, coefficients, cap, query, &block, sums);
     }
 }

@@ -4,15 +4,19 @@
 //! box. Sums are exact, so the order in which threads add does not matter.
 
 use super::{
-    Query, Sums,
+    Finish, Query, Sums,
     accumulate::Kept,
-    block::evaluate,
-    gather::{GROUPS_PER_TASK, group_box, slot_block, slot_query},
+    evaluate,
+    group::{Buffers, GROUPS_PER_TASK, Group, each_group},
     select::with_law,
 };
-use crate::{LANES, Run, Slots, Structure, physics::Physics};
+use crate::{
+    LANES, Structure,
+    lanes::{self, Isa},
+    parallel::for_each_chunk,
+    physics::Physics,
+};
 use nearfield_core::interaction::{Coefficients, PairLaw};
-use pulp::{Arch, NullaryFnOnce};
 use rayon::prelude::*;
 use std::{
     ops::Range,
@@ -56,7 +60,7 @@ impl ScatterSums {
     }
 
     /// Hands out every particle's sums.
-    pub fn for_each(&self, finish: super::Finish) {
+    pub fn for_each(&self, finish: Finish) {
         (0..self.neighbors.len() as u32).into_par_iter().for_each(|i| finish(i, &self.get(i as usize)));
     }
 
@@ -81,8 +85,8 @@ fn add_f64(sum: &AtomicU64, value: f64) {
 /// Computes each pair once and adds it to both particles' sums, which must be reset before.
 pub(crate) fn scatter(physics: &Physics, structure: &dyn Structure, sums: &ScatterSums) {
     with_law!(physics, law, coefficients => {
-        crate::parallel::for_each_chunk(structure.n_groups(), GROUPS_PER_TASK, |groups, runs| {
-            Arch::new().dispatch(Kernel { structure, groups, physics, law, coefficients, runs, sums });
+        for_each_chunk(structure.n_groups(), GROUPS_PER_TASK, |groups, buffers: &mut Buffers| {
+            Isa::detect().run(Kernel { structure, groups, physics, law, coefficients, buffers, sums });
         });
     });
 }
@@ -93,72 +97,65 @@ struct Kernel<'a, L, C> {
     physics: &'a Physics,
     law: &'a L,
     coefficients: &'a C,
-    runs: &'a mut Vec<Run>,
+    buffers: &'a mut Buffers,
     sums: &'a ScatterSums,
 }
 
-impl<L: PairLaw, C: Coefficients> NullaryFnOnce for Kernel<'_, L, C> {
+impl<L: PairLaw, C: Coefficients> lanes::Kernel for Kernel<'_, L, C> {
     type Output = ();
 
     #[inline(always)]
-    fn call(self) {
-        let slots = self.structure.slots();
-        for g in self.groups.clone() {
-            let group = self.structure.group(g);
-            let Some(bounds) = group_box(slots, group.clone(), self.physics.cutoff()) else { continue };
-            let mut runs = std::mem::take(self.runs);
-            runs.clear();
-            self.structure.runs(&bounds, &mut runs);
-            for slot in group.filter(|&slot| slots.particle[slot] != u32::MAX) {
-                self.scatter_query(slots, slot, &runs);
+    fn run<S: lanes::Lanes>(self, lanes: S) {
+        let Self { structure, groups, physics, law, coefficients, buffers, sums } = self;
+        for g in groups {
+            let Some(group) = each_group::<S, C>(lanes, structure, physics, g, buffers) else { continue };
+            for slot in group.slots.clone() {
+                let Some(query) = group.query(slot) else { continue };
+                scatter_query(law, coefficients, physics, &group, &query, sums);
             }
-            *self.runs = runs;
         }
     }
 }
 
-impl<L: PairLaw, C: Coefficients> Kernel<'_, L, C> {
-    #[inline(always)]
-    fn scatter_query(&self, slots: &Slots, slot: usize, runs: &[Run]) {
-        let query = slot_query(slots, slot, self.physics.cutoff());
-        let particle = slots.particle[slot];
-        let (mut force, mut energy, mut virial, mut neighbors) = ([0.0; 3], 0.0, 0.0, 0);
-        for run in runs {
-            let shift = self.physics.sim_box.shift(run.image);
-            let shift = [[shift[0]; LANES], [shift[1]; LANES], [shift[2]; LANES]];
-            let mut s = run.start as usize;
-            while s < run.end as usize {
-                let block = slot_block::<C>(slots, s, run.end as usize, slot, &shift);
-                let mut out = Kept::new();
-                evaluate::<L, C, _, true>(self.law, self.coefficients, self.physics.cap, &query, &block, &mut out);
-                for l in (0..LANES).filter(|&l| out.count[l] != 0) {
-                    let other = slots.particle[s + l];
-                    if !acts(&query, particle, slots, s + l, other) {
-                        continue;
-                    }
-                    let grain = self.physics.grain;
-                    let f = [grain.force(out.x[l]), grain.force(out.y[l]), grain.force(out.z[l])];
-                    let (u, w) = (grain.energy(out.energy[l]), grain.energy(out.virial[l]));
-                    self.sums.add(other as usize, f.map(|f| -f), u, w, 1);
-                    for axis in 0..3 {
-                        force[axis] += f[axis];
-                    }
-                    energy += u;
-                    virial += w;
-                    neighbors += 1;
+#[inline(always)]
+fn scatter_query<L: PairLaw, C: Coefficients>(
+    law: &L,
+    coefficients: &C,
+    physics: &Physics,
+    group: &Group,
+    query: &Query,
+    sums: &ScatterSums,
+) {
+    let grain = physics.grain;
+    let (mut force, mut energy, mut virial, mut neighbors) = ([0.0; 3], 0.0, 0.0, 0);
+    for segment in &group.candidates.segments {
+        let shift = group.shift(segment);
+        for at in (segment.start..segment.end).step_by(LANES) {
+            let block = group.block(at, &shift);
+            let mut out = Kept::new();
+            evaluate::<L, C, _, true, true>(law, coefficients, physics.cap, query, &block, &mut out);
+            for l in 0..LANES {
+                let other_radius = if C::VARIABLE_RANGE { block.radius[l] } else { query.radius };
+                if out.count[l] == 0 || !acts(query, block.particle[l], other_radius) {
+                    continue;
                 }
-                s += LANES;
+                let f = [grain.force(out.x[l]), grain.force(out.y[l]), grain.force(out.z[l])];
+                let (u, w) = (grain.energy(out.energy[l]), grain.energy(out.virial[l]));
+                sums.add(block.particle[l] as usize, [-f[0], -f[1], -f[2]], u, w, 1);
+                force = [force[0] + f[0], force[1] + f[1], force[2] + f[2]];
+                energy += u;
+                virial += w;
+                neighbors += 1;
             }
         }
-        if neighbors > 0 {
-            self.sums.add(particle as usize, force, energy, virial, neighbors);
-        }
+    }
+    if neighbors > 0 {
+        sums.add(query.particle as usize, force, energy, virial, neighbors);
     }
 }
 
 /// Whether the query's ray is the one that computes the pair.
 #[inline(always)]
-fn acts(query: &Query, particle: u32, slots: &Slots, slot: usize, other: u32) -> bool {
-    let other_radius = if slots.radius.is_empty() { query.radius } else { slots.radius[slot] };
-    query.radius < other_radius || (query.radius == other_radius && particle < other)
+fn acts(query: &Query, other: u32, other_radius: f32) -> bool {
+    query.radius < other_radius || (query.radius == other_radius && query.particle < other)
 }

@@ -1,6 +1,5 @@
 //! Neighbour lists from any structure: the runs of a group are gathered once and tested against each of its particles.
 
-mod candidates;
 mod csr;
 mod mirror;
 mod rows;

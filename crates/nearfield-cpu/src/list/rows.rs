@@ -1,8 +1,8 @@
 //! Rows of neighbours of a range of groups, in the structure's order: the unit of parallel and of batched work.
 
-use super::candidates::Candidates;
 use super::rule::Rule;
 use super::scan::Scan;
+use crate::candidates::Candidates;
 use crate::lanes::Isa;
 use crate::{Input, InputRadii, LANES, Run, Structure};
 use nearfield_core::{ListKind, SimBox};

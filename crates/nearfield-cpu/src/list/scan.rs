@@ -1,8 +1,8 @@
 //! The kernel: candidates tested against each query of a group, those within range appended to its row.
 
-use super::candidates::{Candidates, Segment};
 use super::rows::{Contents, Output, Queries, Room, Rows};
 use super::rule::{Acting, Bipartite, Full, Half, Keep, Lane, Query, Rule};
+use crate::candidates::{Candidates, Segment};
 use crate::lanes::{Kernel, Lanes};
 use crate::{GroupBox, LANES, Structure};
 use nearfield_core::SimBox;
@@ -36,7 +36,7 @@ impl Kernel for Scan<'_> {
             };
             runs.clear();
             self.structure.runs(&bounds, runs);
-            candidates.gather(lanes, (slots, self.sim_box), &bounds, runs, per_particle);
+            candidates.gather(lanes, (slots, self.sim_box), &bounds, runs, per_particle, false);
             let work =
                 Group { queries: self.queries, group, sim_box: self.sim_box, candidates, contents: self.contents };
             match (self.rule, per_particle) {

@@ -23,17 +23,17 @@ pub enum EnsembleName {
 pub struct DynamicsConfig {
     /// Number of steps.
     pub steps: u64,
-    /// Time step, [time].
+    /// Time step, \[time\].
     pub dt: f64,
     /// Ensemble.
     pub ensemble: EnsembleName,
-    /// Target temperature of the thermostats, [energy].
+    /// Target temperature of the thermostats, \[energy\].
     pub temperature: f64,
-    /// Friction rate of Langevin dynamics, [1/time].
+    /// Friction rate of Langevin dynamics, \[1/time\].
     pub friction: f64,
-    /// Relaxation time of velocity rescaling, [time].
+    /// Relaxation time of velocity rescaling, \[time\].
     pub relaxation: f64,
-    /// Longest distance a particle may move in a step, [length]; 0 is no limit.
+    /// Longest distance a particle may move in a step, \[length\]; 0 is no limit.
     pub max_displacement: f64,
     /// Seed of the thermostats.
     pub seed: u64,

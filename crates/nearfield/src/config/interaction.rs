@@ -41,11 +41,11 @@ pub struct TypeConfig {
     /// number from 1, and a single such entry stands for whatever one species the input has.
     #[serde(deserialize_with = "name_or_number")]
     pub name: Option<String>,
-    /// Energy scale, [energy].
+    /// Energy scale, \[energy\].
     pub epsilon: f64,
-    /// Length scale, [length].
+    /// Length scale, \[length\].
     pub sigma: f64,
-    /// Mass, [mass].
+    /// Mass, \[mass\].
     pub mass: f64,
 }
 
@@ -79,7 +79,7 @@ fn name_or_number<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Re
 pub struct InteractionConfig {
     /// The potential.
     pub potential: PotentialName,
-    /// Cutoff, [length]; ignored where particles have radii.
+    /// Cutoff, \[length\]; ignored where particles have radii.
     pub cutoff: f64,
     /// What is done to the potential at the cutoff.
     pub truncation: Truncation,
@@ -87,9 +87,9 @@ pub struct InteractionConfig {
     pub mixing: Mixing,
     /// Add the long-range part of a homogeneous Lennard-Jones fluid to energy and pressure.
     pub tail_correction: bool,
-    /// Inverse screening length of Yukawa, [1/length].
+    /// Inverse screening length of Yukawa, \[1/length\].
     pub kappa: f64,
-    /// Width parameter of Morse, [1/length].
+    /// Width parameter of Morse, \[1/length\].
     pub alpha: f64,
     /// File of columns r U F, relative to the configuration's folder.
     pub table: Option<PathBuf>,

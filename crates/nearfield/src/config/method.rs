@@ -51,7 +51,7 @@ pub struct MethodConfig {
     /// Memory order.
     #[serde(with = "text")]
     pub order: Order,
-    /// Verlet skin of list methods, [length].
+    /// Verlet skin of list methods, \[length\].
     pub skin: f64,
     /// Sum forces independently of order.
     pub deterministic: bool,

@@ -46,13 +46,13 @@ pub enum Outside {
 pub struct RadiiSpec {
     /// The distribution.
     pub distribution: Distribution,
-    /// The constant, [length].
+    /// The constant, \[length\].
     pub value: f64,
     /// Mean of the logarithm.
     pub mu: f64,
     /// Standard deviation of the logarithm.
     pub sigma: f64,
-    /// Smallest and largest radius, [length].
+    /// Smallest and largest radius, \[length\].
     pub range: [f64; 2],
     /// Treatment of log-normal draws outside the range.
     pub outside: Outside,

@@ -51,16 +51,16 @@ pub struct Generate {
     pub n: usize,
     /// Particles per volume, [1/length³]: makes a cubic box.
     pub density: Option<f64>,
-    /// Box lengths, [length]; the box starts at the origin.
+    /// Box lengths, \[length\]; the box starts at the origin.
     #[serde(rename = "box")]
     pub lengths: Option<[f64; 3]>,
-    /// Temperature of the velocities, [energy].
+    /// Temperature of the velocities, \[energy\].
     pub temperature: f64,
     /// Seed of all random numbers.
     pub seed: u64,
-    /// Centre of a cluster, [length]; random when absent.
+    /// Centre of a cluster, \[length\]; random when absent.
     pub center: Option<[f64; 3]>,
-    /// Standard deviation of a cluster on each axis, [length].
+    /// Standard deviation of a cluster on each axis, \[length\].
     pub spread: f64,
     /// Search radius of each particle; absent for one cutoff.
     pub radii: Option<RadiiSpec>,

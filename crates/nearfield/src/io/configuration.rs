@@ -13,17 +13,17 @@ use std::collections::HashMap;
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Configuration {
-    /// Positions, [length], as in the file: not wrapped into the box.
+    /// Positions, \[length\], as in the file: not wrapped into the box.
     pub position: Vec3s,
-    /// Velocities, [length/time].
+    /// Velocities, \[length/time\].
     pub velocity: Option<Vec3s>,
-    /// Forces, [energy/length].
+    /// Forces, \[energy/length\].
     pub force: Option<Vec3s>,
     /// Species of each particle.
     pub species: Species,
-    /// Mass of each *species*, `[species.names.len()]`, [mass].
+    /// Mass of each *species*, `[species.names.len()]`, \[mass\].
     pub mass: Option<Vec<f32>>,
-    /// Search radius of each particle, [length].
+    /// Search radius of each particle, \[length\].
     pub radius: Option<Vec<f32>>,
     /// Periodic image of each particle: the unwrapped position is `position + image * box length`.
     pub image: Option<Vec<[i32; 3]>>,
@@ -33,7 +33,7 @@ pub struct Configuration {
     pub bounds: Option<Bounds>,
     /// Time step number.
     pub step: Option<u64>,
-    /// Time, [time].
+    /// Time, \[time\].
     pub time: Option<f64>,
     /// The title or comment.
     pub comment: Option<String>,
@@ -48,7 +48,7 @@ pub struct Species {
     pub of: Vec<u32>,
 }
 
-/// The bounds of an orthorhombic box, [length]; always finite and of positive length.
+/// The bounds of an orthorhombic box, \[length\]; always finite and of positive length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// Lower corner.

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 /// Appends `step,time,msd,x,y,z` to a table: the mean over particles of |r(t) - r(0)|² and its parts by axis,
-/// [length²]. Box crossings are followed.
+/// \[length²\]. Box crossings are followed.
 pub struct MeanSquaredDisplacement {
     path: PathBuf,
     every: u64,

@@ -37,7 +37,7 @@ impl EnergyMeter {
         (!counters.is_empty()).then_some(Self { counters, microjoules: 0 })
     }
 
-    /// Energy since the meter was found, [J]. To be asked more often than a counter takes to start again: some
+    /// Energy since the meter was found, \[J\]. To be asked more often than a counter takes to start again: some
     /// minutes under full load.
     pub fn joules(&mut self) -> f64 {
         for counter in &mut self.counters {

@@ -50,13 +50,13 @@ pub struct Record {
     pub steps: u64,
     /// The step this run started from, when it was resumed.
     pub resumed_from: Option<u64>,
-    /// Wall time since the (resumed) start, [s].
+    /// Wall time since the (resumed) start, \[s\].
     pub wall_seconds: f64,
     /// Steps of this start over its wall time, outputs included.
     pub steps_per_second: f64,
     /// Particles times steps over wall time.
     pub particle_steps_per_second: f64,
-    /// Energy the processors used since the (resumed) start, [J], other programs included; absent where there is no
+    /// Energy the processors used since the (resumed) start, \[J\], other programs included; absent where there is no
     /// meter that may be read.
     pub energy_joules: Option<f64>,
     /// The last thermodynamic state.

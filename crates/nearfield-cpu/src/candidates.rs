@@ -9,7 +9,7 @@ use nearfield_core::predicate::conservative_range;
 
 /// Candidates seen in one periodic image: whole chunks of lanes, padded.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Segment {
+pub(crate) struct Segment {
     pub start: usize,
     pub end: usize,
     pub image: [i8; 3],
@@ -17,11 +17,12 @@ pub(super) struct Segment {
 
 /// Candidates of a group.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Candidates {
+pub(crate) struct Candidates {
     pub x: Vec<f32>,
     pub y: Vec<f32>,
     pub z: Vec<f32>,
     pub radius: Vec<f32>,
+    pub kind: Vec<u32>,
     pub particle: Vec<u32>,
     pub segments: Vec<Segment>,
 }
@@ -84,7 +85,8 @@ impl Candidates {
     }
 
     /// Replaces the candidates by those slots of `runs` that are near the box of `group`, one segment for each
-    /// stretch of runs of the same image. Radii are those of the slots, where they have any and `with_radii`.
+    /// stretch of runs of the same image. Radii are those of the slots, where they have any and `with_radii`; types
+    /// likewise.
     #[inline(always)]
     pub fn gather<L: Lanes>(
         &mut self,
@@ -93,6 +95,7 @@ impl Candidates {
         group: &GroupBox,
         runs: &[Run],
         with_radii: bool,
+        with_kinds: bool,
     ) {
         let (slots, sim_box) = structure;
         self.make_room(runs.iter().map(|run| (run.end - run.start) as usize + LANES).sum::<usize>() + LANES);
@@ -101,6 +104,7 @@ impl Candidates {
         // Slices of their own, so that a store to one does not make the others be looked up again.
         let (to_x, to_y, to_z) = (&mut self.x[..], &mut self.y[..], &mut self.z[..]);
         let (to_radius, to_particle) = (&mut self.radius[..], &mut self.particle[..]);
+        let to_kind = &mut self.kind[..];
         let (mut at, mut start) = (0, 0);
         let mut reach = Reach::new(lanes, group, [0.0; 3], slack);
         for (k, run) in runs.iter().enumerate() {
@@ -113,7 +117,8 @@ impl Candidates {
             let y = slots.y[slice.clone()].as_chunks::<LANES>().0;
             let z = slots.z[slice.clone()].as_chunks::<LANES>().0;
             let particle = slots.particle[slice.clone()].as_chunks::<LANES>().0;
-            let radii = if with_radii { slots.radius[slice].as_chunks::<LANES>().0 } else { &[] };
+            let radii = if with_radii { slots.radius[slice.clone()].as_chunks::<LANES>().0 } else { &[] };
+            let kinds = if with_kinds { slots.kind[slice].as_chunks::<LANES>().0 } else { &[] };
             let mut left = n;
             for (c, (((x, y), z), particle)) in x.iter().zip(y).zip(z).zip(particle).enumerate() {
                 let in_run = if left < LANES { (1u16 << left) - 1 } else { u16::MAX };
@@ -128,10 +133,13 @@ impl Candidates {
                 if let Some(radius) = radius {
                     lanes.compress(mask, radius, chunk_mut(to_radius, at));
                 }
+                if with_kinds {
+                    lanes.compress_u(mask, lanes.load_u(&kinds[c]), chunk_mut(to_kind, at));
+                }
                 at += mask.count_ones() as usize;
             }
             if runs.get(k + 1).is_none_or(|next| next.image != run.image) && at > start {
-                to_x[at..at + LANES].fill(f32::NAN);
+                to_x[at..at + LANES].fill(Slots::FAR);
                 at = at.next_multiple_of(LANES);
                 self.segments.push(Segment { start, end: at, image: run.image });
                 start = at;
@@ -146,6 +154,7 @@ impl Candidates {
                 array.resize(len, 0.0);
             }
             self.particle.resize(len, 0);
+            self.kind.resize(len, 0);
         }
     }
 }
