@@ -46,6 +46,9 @@ pub enum Error {
         /// What is wrong.
         source: nearfield_core::Error,
     },
+    /// The output directory cannot be renamed to make room, because the user is in it.
+    #[error("{} holds an earlier run, which would be overwritten; name another output directory", .0.display())]
+    Occupied(PathBuf),
     /// `--resume` without a usable checkpoint.
     #[error("cannot resume from {}: {reason}", path.display())]
     Resume {

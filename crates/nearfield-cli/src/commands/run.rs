@@ -4,7 +4,7 @@ use super::{print_line, print_note};
 use crate::{arguments::Run as RunArguments, failure::Failure, progress::RunBar};
 use nearfield::{
     config::Config,
-    run::{Record, Run},
+    run::{CHECKPOINT, Record, Run},
 };
 use std::{
     ops::ControlFlow,
@@ -118,5 +118,8 @@ fn summarise(record: &Record, output: &Path) {
             report.dangerous_builds, report.list_builds
         ));
     }
-    print_line(&format!("output in {}", output.display()));
+    let names = ["thermo.csv", "rdf.csv", "msd.csv", "run.json", CHECKPOINT].map(Path::new);
+    let names = [names[0], &record.config.output.trajectory].into_iter().chain(names[1..].iter().copied());
+    let written: Vec<_> = names.filter(|name| output.join(name).exists()).map(|name| name.to_string_lossy()).collect();
+    print_line(&format!("in {}: {}", output.display(), written.join(", ")));
 }

@@ -150,7 +150,8 @@ impl Loaded {
         let state = &self.state;
         let bad = state.id.iter().position(|&id| id == particle).expect("ids are a permutation");
         let force = self.results.force.get(bad);
-        if self.physics.interaction.potential.diverges_at_zero() {
+        // Later on two particles meet only where a run has blown up.
+        if step == 0 && self.physics.interaction.potential.diverges_at_zero() {
             let place = state.position.get(bad);
             let twin = (0..state.len()).find(|&i| i != bad && state.position.get(i) == place);
             if let Some(twin) = twin {

@@ -1,6 +1,10 @@
 //! Checkpoints: everything a run needs to continue, in MessagePack.
 
-use crate::{Error, Result, config::Config, io::atomic_write};
+use crate::{
+    Error, Result,
+    config::{Choice, Config},
+    io::atomic_write,
+};
 use nearfield_core::{Method, Particles, Radii, Report, SimBox, System, engine::MemoryOrder};
 use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, fs, path::Path};
@@ -116,11 +120,20 @@ impl Checkpoint {
             .map_err(|error| format!("its configuration is not understood: {error}"))?;
         let mut now = config.clone();
         now.dynamics.steps = then.dynamics.steps;
+        now.method.name = match config.method.name {
+            // The choice was made when the run began.
+            Choice::Auto => then.method.name,
+            Choice::Of(method) if method == self.method => then.method.name,
+            Choice::Of(method) => return Err(format!("it was written by method {}, not {method}", self.method)),
+        };
+        now.method.device = then.method.device;
+        now.method.memory_budget = then.method.memory_budget;
         let differs = [
             ("system", then.system != now.system),
             ("boundary", then.boundary != now.boundary),
             ("interaction", then.interaction != now.interaction),
             ("dynamics", then.dynamics != now.dynamics),
+            ("method", then.method != now.method),
         ];
         match differs.iter().find(|(_, differs)| *differs) {
             Some((section, _)) => Err(format!("[{section}] of the configuration is not that of the checkpoint")),

@@ -5,10 +5,11 @@
 
 mod checkpoint;
 mod directory;
+mod energy;
 mod record;
 
 pub use checkpoint::Checkpoint;
-pub use record::{Record, Status};
+pub use record::{Record, Status, Versions};
 
 use crate::{
     Error, Progress, Result, Simulation,
@@ -53,8 +54,8 @@ impl Run {
         Ok(Self { observers: observers(&config), config, simulation, record, saved: None, moved })
     }
 
-    /// Continues the run whose checkpoint lies in the output directory. Only the number of steps, the outputs and
-    /// the device may differ from the run before; the method stays that of the checkpoint.
+    /// Continues the run whose checkpoint lies in the output directory. Only the number of steps, the outputs, the
+    /// device and the memory budget may differ from the run before; the method stays that of the checkpoint.
     ///
     /// # Errors
     /// [`Error::Resume`], and as [`Run::new`].
@@ -116,7 +117,11 @@ impl Run {
         let every = self.config.output.checkpoint_every;
         loop {
             let end = next_multiple(self.simulation.step(), every).unwrap_or(last).min(last);
-            self.simulation.run(end, &mut self.observers, &mut |p| progress(Progress { last_step: last, ..p }))?;
+            let meter = &mut self.record;
+            self.simulation.run(end, &mut self.observers, &mut |p| {
+                meter.read_meter();
+                progress(Progress { last_step: last, ..p })
+            })?;
             self.save()?;
             if end == last {
                 return Ok(());

@@ -1,9 +1,10 @@
 //! run.json: what ran, how, and how it went.
 
+use super::energy::EnergyMeter;
 use crate::{Result, Simulation, Thermo, auto::Choice, config::Config, io::atomic_write};
 use nearfield_core::{Plan, Report};
 use serde::Serialize;
-use std::{path::Path, time::Instant};
+use std::{env, path::Path, time::Instant};
 
 /// How a run stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -19,11 +20,20 @@ pub enum Status {
     Failed,
 }
 
+/// Versions of what ran.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Versions {
+    /// Nearfield.
+    pub nearfield: &'static str,
+    /// Operating system and processor architecture.
+    pub system: String,
+}
+
 /// The content of run.json.
 #[derive(Clone, Debug, Serialize)]
 pub struct Record {
-    /// Version of Nearfield.
-    pub version: &'static str,
+    /// What ran.
+    pub versions: Versions,
     /// How it went.
     pub status: Status,
     /// What stopped a failed run.
@@ -46,7 +56,8 @@ pub struct Record {
     pub steps_per_second: f64,
     /// Particles times steps over wall time.
     pub particle_steps_per_second: f64,
-    /// Energy used, \[J\]; absent where there is no meter.
+    /// Energy the processors used since the (resumed) start, \[J\], other programs included; absent where there is no
+    /// meter that may be read.
     pub energy_joules: Option<f64>,
     /// The last thermodynamic state.
     pub thermo: Option<Thermo>,
@@ -56,6 +67,8 @@ pub struct Record {
     pub config: Config,
     #[serde(skip)]
     start: Instant,
+    #[serde(skip)]
+    meter: Option<EnergyMeter>,
     /// What was done before the resumed start.
     #[serde(skip)]
     earlier: Report,
@@ -64,7 +77,10 @@ pub struct Record {
 impl Record {
     pub(super) fn new(config: &Config, simulation: &Simulation) -> Self {
         Self {
-            version: env!("CARGO_PKG_VERSION"),
+            versions: Versions {
+                nearfield: env!("CARGO_PKG_VERSION"),
+                system: format!("{} {}", env::consts::OS, env::consts::ARCH),
+            },
             status: Status::Running,
             error: None,
             device: simulation.device(),
@@ -81,6 +97,7 @@ impl Record {
             report: Report::default(),
             config: config.clone(),
             start: Instant::now(),
+            meter: EnergyMeter::find(),
             earlier: Report::default(),
         }
     }
@@ -101,11 +118,17 @@ impl Record {
     pub(super) fn update(&mut self, simulation: &Simulation, status: Status) {
         self.status = status;
         self.steps = simulation.step();
+        self.read_meter();
         self.wall_seconds = self.start.elapsed().as_secs_f64();
         let steps = (self.steps - self.resumed_from.unwrap_or(0)) as f64;
         self.steps_per_second = steps / self.wall_seconds;
         self.particle_steps_per_second = self.steps_per_second * self.n_particles as f64;
         self.report = self.report_with(simulation.report());
+    }
+
+    /// Keeps the meter going: its counters start again now and then.
+    pub(super) fn read_meter(&mut self) {
+        self.energy_joules = self.meter.as_mut().map(EnergyMeter::joules);
     }
 
     pub(super) fn write(&self, path: &Path) -> Result<()> {
