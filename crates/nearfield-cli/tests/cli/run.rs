@@ -26,6 +26,7 @@ fn a_run_writes_what_the_contract_says() {
     folder.write("melt.toml", MELT);
     let outcome = folder.succeed("run melt.toml --steps 60 --set output.msd_every=20 --set output.rdf_every=20");
     assert!(outcome.stdout.contains("60 steps of 500 particles"), "{}", outcome.stdout);
+    assert!(outcome.stderr.contains("steps 0 to 60, output in out"), "{}", outcome.stderr);
     for file in ["thermo.csv", "trajectory.xyz", "run.json", "checkpoint.nearfield"] {
         assert!(outcome.stdout.contains(file), "the summary names {file}: {}", outcome.stdout);
     }
