@@ -91,6 +91,15 @@ fn a_run_in_the_present_directory_never_moves_it() {
 }
 
 #[test]
+fn files_that_are_no_earlier_run_are_never_overwritten() {
+    let folder = Folder::new();
+    folder.write("melt.toml", MELT).write("trajectory.xyz", "the user's own");
+    folder.refuse("run melt.toml --method cell --output .", &["holds trajectory.xyz", "another output directory"]);
+    folder.succeed("run melt.toml --method cell --steps 1 --output . --set output.trajectory=t.xyz");
+    assert_eq!(folder.read("trajectory.xyz"), "the user's own");
+}
+
+#[test]
 fn a_run_that_blows_up_names_step_particle_and_checkpoint_and_leaves_readable_files() {
     for method in ["brute", "cell", "rt-list", "rt-forces", "rt-perse", "rt-boxes"] {
         let folder = Folder::new();
