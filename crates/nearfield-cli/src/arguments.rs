@@ -39,20 +39,22 @@ pub enum Command {
 const RUN_HELP: &str = "\
 Examples:
   nearfield run examples/melt.toml
-  nearfield run examples/melt.toml --set system.generate.n=256000 --set dynamics.dt=0.004 --steps 500
+  nearfield run examples/melt.toml --set system.generate.n=256000 --steps 500
   nearfield run examples/melt.toml --method rt-forces --output out/rt
   nearfield run examples/melt.toml --steps 5000 --resume
   nearfield run --print-config > run.toml
 
-The output directory gets thermo.csv, the trajectory (extended XYZ), run.json and checkpoint.nearfield. One that
-holds an earlier run is renamed, not overwritten. The number of threads is that of the machine, or RAYON_NUM_THREADS.";
+The output directory gets thermo.csv (energies, temperature, pressure), the trajectory (extended XYZ), run.json (what \
+ran, how fast, and how it ended) and checkpoint.nearfield. One that holds an earlier run is renamed, not overwritten. \
+Ctrl-C finishes the step, writes a checkpoint and stops. The number of threads is that of the machine, or \
+RAYON_NUM_THREADS.";
 
 const FORCES_HELP: &str = "\
 Examples:
   nearfield forces melt.data --json
   nearfield forces start.xyz --cutoff 3 --truncation force --boundary ppw --output forces.csv
 
-Lennard-Jones unless a configuration file says otherwise. Boundaries are a letter an axis: p periodic, w wall, o open;
+Lennard-Jones unless a configuration file says otherwise. Boundaries are a letter an axis: p periodic, w wall, o open; \
 without them the input file's own (or all periodic where it has a box, all open where not).";
 
 const NEIGHBORS_HELP: &str = "\
@@ -138,8 +140,8 @@ pub struct Forces {
     pub truncation: Option<TruncationName>,
     #[command(flatten)]
     pub how: How,
-    /// Where to write id,fx,fy,fz,energy,neighbors.
-    #[arg(long, value_name = "forces.csv")]
+    /// Where to write id,fx,fy,fz,energy,neighbors: as in forces.csv.
+    #[arg(long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 }
 
@@ -155,8 +157,8 @@ pub struct NeighborsArguments {
     pub half: bool,
     #[command(flatten)]
     pub how: How,
-    /// Where to write the pairs: .csv or .npz.
-    #[arg(long, value_name = "pairs.csv")]
+    /// Where to write the pairs: as in pairs.csv or pairs.npz.
+    #[arg(long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 }
 

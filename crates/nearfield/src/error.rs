@@ -46,9 +46,15 @@ pub enum Error {
         /// What is wrong.
         source: nearfield_core::Error,
     },
-    /// The output directory cannot be renamed to make room, because the user is in it.
-    #[error("{} holds an earlier run, which would be overwritten; name another output directory", .0.display())]
-    Occupied(PathBuf),
+    /// The output directory holds what would be overwritten: files that are not an earlier run's, or an earlier run
+    /// that cannot be renamed because the user is in its directory.
+    #[error("{} holds {what}, which would be overwritten; name another output directory", directory.display())]
+    Occupied {
+        /// The output directory.
+        directory: PathBuf,
+        /// What would be lost.
+        what: String,
+    },
     /// `--resume` without a usable checkpoint.
     #[error("cannot resume from {}: {reason}", path.display())]
     Resume {

@@ -8,7 +8,7 @@ use crate::{
     run::Checkpoint,
 };
 use nearfield_core::{
-    Dynamics, Engine, Method, PerParticle, Plan, Quantities, Report, System, Totals, interaction::TailCorrection,
+    Dynamics, Engine, Method, PerParticle, Plan, Quantities, Radii, Report, System, Totals, interaction::TailCorrection,
 };
 use std::{
     ops::ControlFlow,
@@ -269,6 +269,11 @@ impl Simulation {
     /// Number of particles.
     pub fn n_particles(&self) -> usize {
         self.system.particles.len()
+    }
+
+    /// Ranges.
+    pub fn radii(&self) -> &Radii {
+        &self.system.radii
     }
 
     /// Steps done.

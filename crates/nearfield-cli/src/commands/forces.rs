@@ -1,6 +1,6 @@
 //! `nearfield forces`: one single-point evaluation.
 
-use super::{print_json, print_line};
+use super::{configuration, note_radii, print_json, print_line};
 use crate::{
     arguments::{Forces, How},
     failure::Failure,
@@ -28,7 +28,7 @@ struct Summary {
 
 pub fn run(arguments: &Forces) -> Result<(), Failure> {
     let mut config = match &arguments.config {
-        Some(path) => Config::load(path, &[]).map_err(|error| Failure::from(error).within(path.display()))?,
+        Some(path) => configuration(path, &[])?,
         None => Config::default(),
     };
     let interaction = &mut config.interaction;
@@ -54,6 +54,7 @@ pub fn run(arguments: &Forces) -> Result<(), Failure> {
     if system.particles.is_empty() {
         return Err(of_input(CoreError::Empty).into());
     }
+    note_radii(&system.radii);
     let mut engine = engine(arguments.how.device)?;
     let plan = plan(&mut *engine, &system, &arguments.how)?;
     let start = Instant::now();

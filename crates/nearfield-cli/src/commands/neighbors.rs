@@ -1,6 +1,6 @@
 //! `nearfield neighbors`: every pair within a cutoff.
 
-use super::{forces::plan, print_json, print_line};
+use super::{forces::plan, note_radii, print_json, print_line};
 use crate::{arguments::NeighborsArguments, failure::Failure};
 use nearfield::{ListKind, ListRequest, Method, NeighborList, engine, file_points, io};
 use serde::Serialize;
@@ -24,6 +24,7 @@ struct Summary {
 pub fn run(arguments: &NeighborsArguments) -> Result<(), Failure> {
     let writer = arguments.output.as_ref().map(|path| writer(path)).transpose()?;
     let system = file_points(&arguments.input, arguments.cutoff, arguments.how.boundary)?;
+    note_radii(&system.radii);
     let mut engine = engine(arguments.how.device)?;
     let plan = plan(&mut *engine, &system, &arguments.how)?;
     let kind = if arguments.half { ListKind::Half } else { ListKind::Full };

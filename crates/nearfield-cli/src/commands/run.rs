@@ -1,6 +1,6 @@
 //! `nearfield run`: a simulation from a configuration file.
 
-use super::{print_line, print_note};
+use super::{configuration, note_radii, print_line, print_note};
 use crate::{arguments::Run as RunArguments, failure::Failure, progress::RunBar};
 use nearfield::{
     config::Config,
@@ -29,8 +29,10 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
         print_note(&format!("an earlier run in {} was moved to {}", output.display(), moved.display()));
     }
     print_note(&format!("{} particles on {}", simulation.n_particles(), simulation.device()));
+    note_radii(simulation.radii());
     let choice = simulation.choice();
     print_note(&format!("method {}: {}", choice.method, choice.reason));
+    print_note(&format!("steps {} to {last_step}, output in {}", simulation.step(), output.display()));
     let bar = RunBar::new(simulation.step(), last_step, simulation.n_particles());
     let stop = stop_on_interrupt();
     let outcome = run.execute(&mut |progress| {
@@ -45,9 +47,7 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
 
 fn config(arguments: &RunArguments) -> Result<Config, Failure> {
     let mut config = match &arguments.config {
-        Some(path) => {
-            Config::load(path, &arguments.set).map_err(|error| Failure::from(error).within(path.display()))?
-        }
+        Some(path) => configuration(path, &arguments.set)?,
         None => Config::parse("", &arguments.set, "")?,
     };
     if let Some(device) = arguments.device {

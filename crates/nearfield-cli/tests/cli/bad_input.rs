@@ -63,7 +63,7 @@ fn a_missing_unknown_or_foreign_file_is_named() {
     folder.refuse("neighbors binary.xyz --cutoff 1", &["binary.xyz:1: this is not text"]);
     folder.refuse("neighbors nothing.xyz --cutoff 1", &["nothing.xyz is empty"]);
     folder.refuse("neighbors . --cutoff 1", &["unknown file format"]);
-    folder.refuse("run gone.toml", &["gone.toml", "No such file"]);
+    folder.refuse("run gone.toml", &["error: cannot read gone.toml: No such file"]);
     folder.refuse("run run.toml", &["cannot open gone.xyz: No such file"]);
     folder.refuse("forces --config gone.toml nothing.xyz", &["gone.toml", "No such file"]);
 }
@@ -168,6 +168,9 @@ fn a_method_that_does_not_support_the_system_says_what_does() {
 fn a_place_that_cannot_be_written_is_named() {
     let folder = Folder::new();
     folder.write("good.xyz", GOOD).write("run.toml", RUN).write("file", "keep me");
+    for trajectory in ["a.data", "sub/a.xyz", "/tmp/a.xyz", "..", ""] {
+        folder.refuse(&format!("run run.toml --set output.trajectory={trajectory}"), &["output.trajectory"]);
+    }
     folder.refuse("run run.toml --output file/out", &["cannot write file/out"]);
     folder.refuse("run run.toml --output file", &["cannot write file"]);
     folder.refuse("run run.toml --output /proc/nearfield", &["cannot write /proc/nearfield"]);

@@ -215,7 +215,8 @@ fn radii_of_the_input_replace_the_cutoff() {
     let sim_box = SimBox::cubic(10.0, Boundary::Periodic).unwrap();
     let system = System { sim_box, particles, radii, interaction: Interaction::lennard_jones() };
     write(&folder, "radii.xyz", &system);
-    folder.succeed("neighbors radii.xyz --cutoff 0.1 --half --output pairs.csv");
+    let outcome = folder.succeed("neighbors radii.xyz --cutoff 0.1 --half --output pairs.csv");
+    assert!(outcome.stderr.contains("own radius, 0.5 to 3.1; the cutoff is not used"), "{}", outcome.stderr);
     assert_eq!(folder.read("pairs.csv"), "i,j,distance,sx,sy,sz\n0,2,3.0,0,0,0\n1,2,2.0,0,0,0\n");
     let summary = json(&folder.succeed("forces radii.xyz --json").stdout);
     let expected = oracle::evaluate(&system);

@@ -43,7 +43,7 @@ fn help_names_every_option_of_the_contract() {
         ),
         (
             "neighbors",
-            "INPUT --cutoff --half --boundary --images --order --device --method --output pairs.csv .npz --json",
+            "INPUT --cutoff --half --boundary --images --order --device --method --output pairs.csv pairs.npz --json",
         ),
         (
             "generate",

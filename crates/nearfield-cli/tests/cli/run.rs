@@ -26,6 +26,7 @@ fn a_run_writes_what_the_contract_says() {
     folder.write("melt.toml", MELT);
     let outcome = folder.succeed("run melt.toml --steps 60 --set output.msd_every=20 --set output.rdf_every=20");
     assert!(outcome.stdout.contains("60 steps of 500 particles"), "{}", outcome.stdout);
+    assert!(outcome.stderr.contains("steps 0 to 60, output in out"), "{}", outcome.stderr);
     for file in ["thermo.csv", "trajectory.xyz", "run.json", "checkpoint.nearfield"] {
         assert!(outcome.stdout.contains(file), "the summary names {file}: {}", outcome.stdout);
     }
@@ -87,6 +88,15 @@ fn a_run_in_the_present_directory_never_moves_it() {
     folder.refuse("run melt.toml --steps 1 --method cell --output .", &["holds an earlier run", "another"]);
     folder.refuse("run melt.toml --steps 1 --method cell --output ./.", &["holds an earlier run"]);
     folder.succeed("run melt.toml --steps 2 --method cell --output . --resume");
+}
+
+#[test]
+fn files_that_are_no_earlier_run_are_never_overwritten() {
+    let folder = Folder::new();
+    folder.write("melt.toml", MELT).write("trajectory.xyz", "the user's own");
+    folder.refuse("run melt.toml --method cell --output .", &["holds trajectory.xyz", "another output directory"]);
+    folder.succeed("run melt.toml --method cell --steps 1 --output . --set output.trajectory=t.xyz");
+    assert_eq!(folder.read("trajectory.xyz"), "the user's own");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! `[output]`: what a run writes.
 
 use super::{Error, Result};
+use crate::io::Format;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -53,6 +54,11 @@ impl OutputConfig {
             if path.as_os_str().is_empty() {
                 return Err(Error::invalid(key, "\"\"", "must not be empty"));
             }
+        }
+        let is_name = self.trajectory.file_name() == Some(self.trajectory.as_os_str());
+        if !is_name || !matches!(Format::of(&self.trajectory), Ok(Format::ExtendedXyz)) {
+            let reason = "must be a file name ending in .xyz or .extxyz; output.directory is where it goes";
+            return Err(Error::invalid("output.trajectory", format!("{:?}", self.trajectory), reason));
         }
         Ok(())
     }

@@ -7,21 +7,39 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Makes an empty output directory; one that holds an earlier run is renamed to `NAME.1`, `NAME.2`, ... first.
-/// Gives the new name of what was moved.
-pub(super) fn prepare(directory: &Path) -> Result<Option<PathBuf>> {
+/// Makes an output directory without any of the `files`; one that holds an earlier run is renamed to `NAME.1`,
+/// `NAME.2`, ... first. Gives the new name of what was moved.
+pub(super) fn prepare(directory: &Path, files: &[&Path]) -> Result<Option<PathBuf>> {
     let failed = |source| IoError::Write { path: directory.to_owned(), source };
+    let occupied = |what: String| Error::Occupied { directory: directory.to_owned(), what };
     let target = target(directory);
     let mut moved = None;
-    if target.join("run.json").exists() {
-        let free = free_name(&target).ok_or_else(|| Error::Occupied(directory.to_owned()))?;
+    if target.join(super::RECORD).exists() {
+        let free = free_name(&target).ok_or_else(|| occupied("an earlier run".into()))?;
         fs::rename(&target, &free).map_err(failed)?;
         moved = Some(free);
+    } else if let Some(file) = files.iter().find(|file| target.join(file).exists()) {
+        // No run of ours: it might be the input.
+        return Err(occupied(file.display().to_string()));
     }
     fs::create_dir_all(&target).map_err(failed)?;
     // A directory that exists may still refuse files.
     tempfile::tempfile_in(&target).map_err(failed)?;
     Ok(moved)
+}
+
+/// Removes what a kill in the middle of writing a file left behind.
+pub(super) fn sweep(directory: &Path, files: &[&Path]) {
+    let is_left_over = |name: &str| {
+        let of = |file: &&Path| name.starts_with(&format!(".{}", file.display()));
+        name.ends_with(".tmp") && files.iter().any(|file| of(file))
+    };
+    for entry in fs::read_dir(directory).into_iter().flatten().flatten() {
+        if entry.file_name().to_str().is_some_and(is_left_over) {
+            // It does no harm but to take room.
+            let _ = fs::remove_file(entry.path());
+        }
+    }
 }
 
 /// What is to be renamed: the directory that a link leads to, not the link.

@@ -19,8 +19,13 @@ use crate::{
     simulation::next_multiple,
 };
 use nearfield_core::{Method, Plan};
-use std::{ops::ControlFlow, path::PathBuf};
+use std::{
+    ops::ControlFlow,
+    path::{Path, PathBuf},
+};
 
+/// File name of the record.
+pub const RECORD: &str = "run.json";
 /// File name of the checkpoint.
 pub const CHECKPOINT: &str = "checkpoint.nearfield";
 
@@ -49,7 +54,7 @@ impl Run {
         let mut simulation = simulation(&config, method)?;
         // Forces that cannot be are found before the directory is touched.
         simulation.thermo()?;
-        let moved = directory::prepare(&config.output.directory)?;
+        let moved = directory::prepare(&config.output.directory, &files(&config))?;
         let record = Record::new(&config, &simulation);
         Ok(Self { observers: observers(&config), config, simulation, record, saved: None, moved })
     }
@@ -72,6 +77,7 @@ impl Run {
                 observer.restore(saved)?;
             }
         }
+        directory::sweep(&config.output.directory, &files(&config));
         let record = Record::new(&config, &simulation).resumed(checkpoint.step, checkpoint.report.clone());
         Ok(Self { config, simulation, observers, record, saved: Some(checkpoint.step), moved: None })
     }
@@ -145,7 +151,7 @@ impl Run {
 
     fn write_record(&mut self, status: Status) -> Result<()> {
         self.record.update(&self.simulation, status);
-        self.record.write(&self.config.output.directory.join("run.json"))
+        self.record.write(&self.config.output.directory.join(RECORD))
     }
 }
 
@@ -160,6 +166,12 @@ fn simulation(config: &Config, method: Option<Method>) -> Result<Simulation> {
         Some(method) => builder.method(method).build(),
         None => builder.build(),
     }
+}
+
+/// Names of the files a run may write.
+fn files(config: &Config) -> [&Path; 6] {
+    let [thermo, rdf, msd, record, checkpoint] = ["thermo.csv", "rdf.csv", "msd.csv", RECORD, CHECKPOINT].map(Path::new);
+    [thermo, &config.output.trajectory, rdf, msd, record, checkpoint]
 }
 
 fn observers(config: &Config) -> Vec<Box<dyn Observer>> {
