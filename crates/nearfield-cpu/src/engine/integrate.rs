@@ -88,6 +88,8 @@ impl Integrator {
     #[inline(always)]
     pub fn finish(&self, p: &mut Moving, force: [f32; 3], kind: u32) {
         self.kick(p, force, kind);
+        // Here too, so that observers see a velocity that the particle will move by.
+        self.limit(p);
     }
 
     #[inline(always)]
