@@ -151,7 +151,8 @@ fn a_kill_at_any_moment_leaves_files_that_can_be_read() {
             let steps = format!("--steps {}", saved + 2);
             folder.write(&file(".checkpoint.nearfieldAbC.tmp"), "cut short");
             folder.succeed(&format!("{} --output out{attempt} --resume", line.replace("--steps 100000", &steps)));
-            let mut names = fs::read_dir(folder.path(format!("out{attempt}"))).unwrap().map(|entry| entry.unwrap().file_name());
+            let mut names =
+                fs::read_dir(folder.path(format!("out{attempt}"))).unwrap().map(|entry| entry.unwrap().file_name());
             assert!(names.all(|name| !name.to_string_lossy().ends_with(".tmp")), "nothing cut short is left");
             let frames = Frames::open(folder.path(file("trajectory.xyz"))).unwrap();
             let steps: Vec<u64> = frames.map(|frame| frame.unwrap().step.unwrap()).collect();

@@ -32,7 +32,7 @@ pub(super) fn prepare(directory: &Path, files: &[&Path]) -> Result<Option<PathBu
 pub(super) fn sweep(directory: &Path, files: &[&Path]) {
     let is_left_over = |name: &str| {
         let of = |file: &&Path| name.starts_with(&format!(".{}", file.display()));
-        name.ends_with(".tmp") && files.iter().any(|file| of(file))
+        name.ends_with(".tmp") && files.iter().any(of)
     };
     for entry in fs::read_dir(directory).into_iter().flatten().flatten() {
         if entry.file_name().to_str().is_some_and(is_left_over) {

@@ -170,7 +170,8 @@ fn simulation(config: &Config, method: Option<Method>) -> Result<Simulation> {
 
 /// Names of the files a run may write.
 fn files(config: &Config) -> [&Path; 6] {
-    let [thermo, rdf, msd, record, checkpoint] = ["thermo.csv", "rdf.csv", "msd.csv", RECORD, CHECKPOINT].map(Path::new);
+    let [thermo, rdf, msd, record, checkpoint] =
+        ["thermo.csv", "rdf.csv", "msd.csv", RECORD, CHECKPOINT].map(Path::new);
     [thermo, &config.output.trajectory, rdf, msd, record, checkpoint]
 }
 
