@@ -51,7 +51,8 @@ impl<T: Real> PairCoefficients<T> {
 }
 
 /// Where a kernel gets a pair's coefficients from.
-pub trait Coefficients: Send + Sync {
+/// Small values, passed by copy: a kernel that read them through a pointer could not keep them in registers.
+pub trait Coefficients: Copy + Send + Sync {
     /// Whether ranges differ from pair to pair; otherwise the one passed in is the uniform cutoff.
     const VARIABLE_RANGE: bool;
     /// Whether types matter.
@@ -75,31 +76,53 @@ impl Coefficients for Single {
 }
 
 /// A table of type pairs, one cutoff.
-#[derive(Clone, Debug)]
-pub struct Typed {
+#[derive(Clone, Copy, Debug)]
+pub struct Typed<'a> {
     n_types: u32,
-    table: Vec<PairCoefficients<f32>>,
+    table: &'a [PairCoefficients<f32>],
 }
 
-impl Coefficients for Typed {
+impl<'a> Typed<'a> {
+    /// Of a table from [`Interaction::typed_table`].
+    ///
+    /// # Panics
+    /// When the table is empty.
+    pub fn new(table: &'a [PairCoefficients<f32>]) -> Self {
+        assert!(!table.is_empty(), "an interaction has at least one type");
+        Self { n_types: table.len().isqrt() as u32, table }
+    }
+}
+
+impl Coefficients for Typed<'_> {
     const VARIABLE_RANGE: bool = false;
     const TYPED: bool = true;
 
     #[inline(always)]
     fn get(&self, kind_i: u32, kind_j: u32, _: f32) -> PairCoefficients<f32> {
-        self.table[(kind_i * self.n_types + kind_j) as usize]
+        // Types are validated, so the last entry never stands in; a panic here would keep loops from being vectorised.
+        let last = self.table.len() - 1;
+        self.table[((kind_i * self.n_types + kind_j) as usize).min(last)]
     }
 }
 
 /// Per-particle radii: sigma = range / `radius_per_sigma`, epsilon by type.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct RadiusScaled<'a, P> {
     potential: &'a P,
     truncation: Truncation,
     sigma_per_range: f32,
     n_types: u32,
-    epsilon: Vec<f32>,
+    /// Row-major by pairs of types.
+    epsilon: &'a [f32],
 }
+
+impl<P> Clone for RadiusScaled<'_, P> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<P> Copy for RadiusScaled<'_, P> {}
 
 impl<P: PairPotential> Coefficients for RadiusScaled<'_, P> {
     const VARIABLE_RANGE: bool = true;
@@ -133,20 +156,20 @@ impl Interaction {
         Single(self.pair_table(cutoff)[0].to_f32())
     }
 
-    /// The table for several types and one cutoff.
-    pub fn typed(&self, cutoff: f32) -> Typed {
-        let table = self.pair_table(cutoff).into_iter().map(PairCoefficients::to_f32).collect();
-        Typed { n_types: self.types.len() as u32, table }
+    /// The table for several types and one cutoff, for [`Typed::new`].
+    pub fn typed_table(&self, cutoff: f32) -> Vec<PairCoefficients<f32>> {
+        self.pair_table(cutoff).into_iter().map(PairCoefficients::to_f32).collect()
     }
 
-    /// Range-scaled coefficients for per-particle radii. `potential` is the one of this interaction.
-    pub fn radius_scaled<'a, P: PairPotential>(&self, potential: &'a P) -> RadiusScaled<'a, P> {
-        let mut epsilon = Vec::new();
-        for a in &self.types {
-            for b in &self.types {
-                epsilon.push(self.mixing.mix(a, b).0 as f32);
-            }
-        }
+    /// Epsilon of every pair of types, row-major, for [`Interaction::radius_scaled`].
+    pub fn epsilon_table(&self) -> Vec<f32> {
+        let pairs = self.types.iter().flat_map(|a| self.types.iter().map(move |b| (a, b)));
+        pairs.map(|(a, b)| self.mixing.mix(a, b).0 as f32).collect()
+    }
+
+    /// Range-scaled coefficients for per-particle radii. `potential` is the one of this interaction, `epsilon` its
+    /// [`Interaction::epsilon_table`].
+    pub fn radius_scaled<'a, P: PairPotential>(&self, potential: &'a P, epsilon: &'a [f32]) -> RadiusScaled<'a, P> {
         RadiusScaled {
             potential,
             truncation: self.truncation,

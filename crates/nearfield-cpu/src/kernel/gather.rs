@@ -12,7 +12,7 @@ use crate::{
     parallel::for_each_chunk,
     physics::Physics,
 };
-use nearfield_core::interaction::{Coefficients, PairLaw};
+use nearfield_core::interaction::Coefficients;
 use std::{marker::PhantomData, ops::Range};
 
 /// What a gather needs beside the pair law.
@@ -39,7 +39,7 @@ fn dispatch<L: Law, C: Coefficients>(
     exact: bool,
     energy: bool,
     law: &L,
-    coefficients: &C,
+    coefficients: C,
     buffers: &mut Buffers,
 ) {
     let isa = Isa::detect();
@@ -62,12 +62,12 @@ struct Kernel<'a, L, C, A, const ENERGY: bool> {
     task: Task<'a>,
     groups: Range<usize>,
     law: &'a L,
-    coefficients: &'a C,
+    coefficients: C,
     buffers: &'a mut Buffers,
     sums: PhantomData<A>,
 }
 
-impl<L: PairLaw, C: Coefficients, A: Summing, const ENERGY: bool> lanes::Kernel for Kernel<'_, L, C, A, ENERGY> {
+impl<L: Law, C: Coefficients, A: Summing, const ENERGY: bool> lanes::Kernel for Kernel<'_, L, C, A, ENERGY> {
     type Output = ();
 
     #[inline(always)]
@@ -87,9 +87,9 @@ impl<L: PairLaw, C: Coefficients, A: Summing, const ENERGY: bool> lanes::Kernel 
 }
 
 #[inline(always)]
-fn gather_query<L: PairLaw, C: Coefficients, A: Summing, const ENERGY: bool>(
+fn gather_query<L: Law, C: Coefficients, A: Summing, const ENERGY: bool>(
     law: &L,
-    coefficients: &C,
+    coefficients: C,
     physics: &Physics,
     group: &Group,
     query: &Query,

@@ -5,17 +5,14 @@ use super::{
     accumulate::{Exact, Summing},
     block::Block,
     evaluate,
-    select::with_law,
+    select::{Law, with_law},
 };
 use crate::{
     Input, InputRadii, LANES, Rows, Slots,
     lanes::{self, Isa},
     physics::Physics,
 };
-use nearfield_core::{
-    NeighborList,
-    interaction::{Coefficients, PairLaw},
-};
+use nearfield_core::{NeighborList, interaction::Coefficients};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -81,11 +78,11 @@ struct Kernel<'a, L, C> {
     range: Range<usize>,
     physics: &'a Physics,
     law: &'a L,
-    coefficients: &'a C,
+    coefficients: C,
     finish: Finish<'a>,
 }
 
-impl<L: PairLaw, C: Coefficients> lanes::Kernel for Kernel<'_, L, C> {
+impl<L: Law, C: Coefficients> lanes::Kernel for Kernel<'_, L, C> {
     type Output = ();
 
     #[inline(always)]
@@ -109,7 +106,7 @@ impl<L: PairLaw, C: Coefficients> lanes::Kernel for Kernel<'_, L, C> {
     }
 }
 
-impl<L: PairLaw, C: Coefficients> Kernel<'_, L, C> {
+impl<L: Law, C: Coefficients> Kernel<'_, L, C> {
     /// Evaluates the first `LANES` entries; lanes past the end are padding.
     #[inline(always)]
     fn block(&self, query: &Query, i: usize, indices: &[u32], images: &[[i8; 3]], sums: &mut Exact) {

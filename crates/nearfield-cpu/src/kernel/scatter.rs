@@ -8,7 +8,7 @@ use super::{
     accumulate::Kept,
     evaluate,
     group::{Buffers, GROUPS_PER_TASK, Group, each_group},
-    select::with_law,
+    select::{Law, with_law},
 };
 use crate::{
     LANES, Structure,
@@ -16,7 +16,7 @@ use crate::{
     parallel::for_each_chunk,
     physics::Physics,
 };
-use nearfield_core::interaction::{Coefficients, PairLaw};
+use nearfield_core::interaction::Coefficients;
 use rayon::prelude::*;
 use std::{
     ops::Range,
@@ -96,12 +96,12 @@ struct Kernel<'a, L, C> {
     groups: Range<usize>,
     physics: &'a Physics,
     law: &'a L,
-    coefficients: &'a C,
+    coefficients: C,
     buffers: &'a mut Buffers,
     sums: &'a ScatterSums,
 }
 
-impl<L: PairLaw, C: Coefficients> lanes::Kernel for Kernel<'_, L, C> {
+impl<L: Law, C: Coefficients> lanes::Kernel for Kernel<'_, L, C> {
     type Output = ();
 
     #[inline(always)]
@@ -118,9 +118,9 @@ impl<L: PairLaw, C: Coefficients> lanes::Kernel for Kernel<'_, L, C> {
 }
 
 #[inline(always)]
-fn scatter_query<L: PairLaw, C: Coefficients>(
+fn scatter_query<L: Law, C: Coefficients>(
     law: &L,
-    coefficients: &C,
+    coefficients: C,
     physics: &Physics,
     group: &Group,
     query: &Query,
