@@ -52,7 +52,7 @@ def main():
                 entries["scipy half"] = len(tree.query_pairs(r, output_type="ndarray"))
 
             def freud_full():
-                query = freud.locality.LinkCell(freud.box.Box.cube(length), points - length / 2)
+                query = freud.locality.AABBQuery(freud.box.Box.cube(length), points - length / 2)
                 pairs = query.query(points - length / 2, {"r_max": r, "exclude_ii": True}).toNeighborList()
                 entries["freud full"] = len(pairs)
 

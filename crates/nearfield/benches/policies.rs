@@ -36,7 +36,7 @@ fn main() {
         ];
         for (radii, spec) in cases {
             let name = format!("{} {radii}", format!("{positions:?}").to_lowercase());
-            if name.contains(filter) {
+            if filter.split_whitespace().all(|word| name.split(' ').any(|part| part == word)) {
                 run(&name, n, steps, scale, positions, &spec);
             }
         }
