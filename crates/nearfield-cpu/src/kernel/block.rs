@@ -27,6 +27,7 @@ pub(super) struct Block<'a> {
 
 /// Adds what the block's neighbours contribute to the query. Without `SHIFTED`, shifts are zero and not read.
 #[inline(always)]
+#[expect(clippy::needless_range_loop, reason = "flat loops over lanes, see above")]
 pub(super) fn evaluate<L: Law, C: Coefficients, A: Accumulator, const ENERGY: bool, const SHIFTED: bool>(
     law: &L,
     coefficients: C,
