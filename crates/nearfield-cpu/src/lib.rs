@@ -32,11 +32,5 @@ pub use structure::{GroupBox, Run, Structure};
 
 /// Name of the instruction set that kernels run with here.
 pub fn instruction_set() -> &'static str {
-    match pulp::Arch::new() {
-        #[cfg(target_arch = "x86_64")]
-        pulp::Arch::V4(_) => "AVX-512",
-        #[cfg(target_arch = "x86_64")]
-        pulp::Arch::V3(_) => "AVX2",
-        _ => "portable",
-    }
+    lanes::Isa::detect().name()
 }

@@ -246,3 +246,21 @@ fn every_generator_writes_a_file_that_reads_back() {
         assert_eq!(folder.read(file), first, "{kind}: the same seed gives the same file");
     }
 }
+
+/// On a machine without one of them its name falls back to the best there is, and the comparison is trivial.
+#[test]
+fn every_instruction_set_gives_the_same_bits() {
+    let folder = Folder::new();
+    write(&folder, "fluid.xyz", &fluid([Boundary::Periodic; 3]));
+    for method in METHODS {
+        let mut outputs = Vec::new();
+        for simd in ["AVX-512", "AVX2", "portable"] {
+            let line = format!("forces fluid.xyz --method {method} --output {simd}.csv");
+            let words: Vec<&str> = line.split(' ').collect();
+            let status = folder.command(&words).env("NEARFIELD_SIMD", simd).output().unwrap().status;
+            assert!(status.success(), "{method} {simd}");
+            outputs.push(folder.read(&format!("{simd}.csv")));
+        }
+        assert!(outputs.iter().all(|output| *output == outputs[0]), "{method}");
+    }
+}

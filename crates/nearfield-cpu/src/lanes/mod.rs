@@ -9,6 +9,7 @@ mod portable;
 mod x86;
 
 pub(crate) use portable::Portable;
+use std::sync::OnceLock;
 
 /// Sixteen lanes; masks are one bit a lane, the lowest bit for lane 0.
 pub(crate) trait Lanes: Copy {
@@ -60,9 +61,26 @@ pub(crate) enum Isa {
 }
 
 impl Isa {
-    /// The best one.
+    /// The best one, or the one that the environment variable NEARFIELD_SIMD names ("AVX-512", "AVX2", "portable")
+    /// where the machine has it: for comparing them.
     pub fn detect() -> Self {
-        Self::available().next().expect("the portable one is always there")
+        static CHOSEN: OnceLock<Isa> = OnceLock::new();
+        *CHOSEN.get_or_init(|| {
+            let wanted = std::env::var("NEARFIELD_SIMD").unwrap_or_default();
+            let named = Self::available().find(|isa| isa.name().eq_ignore_ascii_case(&wanted));
+            named.or_else(|| Self::available().next()).expect("the portable one is always there")
+        })
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512(_) => "AVX-512",
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(_) => "AVX2",
+            Self::Portable => "portable",
+        }
     }
 
     /// All of this machine, the best first.
