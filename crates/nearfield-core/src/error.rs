@@ -155,6 +155,9 @@ pub enum Error {
         /// Bytes available.
         available: u64,
     },
+    /// A device or its driver failed.
+    #[error("the device failed: {0}")]
+    Device(String),
     /// The engine was used before a system was loaded.
     #[error("no system is loaded")]
     NotLoaded,

@@ -1,0 +1,366 @@
+// Generated from nearfield-kernels/src/layouts by `cargo xtask ptx`; edit there.
+
+#pragma once
+
+#include "base.cuh"
+
+// The orthorhombic box. Periodic image `c` of 27 is `(c % 3 - 1, c / 3 % 3 - 1, c / 9 - 1)` box lengths away, so
+// 13 is the box itself.
+struct Box3 {
+    // Lower corner.
+    float lo[3];
+    // Upper corner.
+    float hi[3];
+    // Edge lengths, rounded to f32: periodic shifts are multiples of these.
+    float length[3];
+    // Of each axis: 0 periodic, 1 wall, 2 open.
+    u32 boundary[3];
+};
+static_assert(sizeof(Box3) == 48, "Box3 differs between host and device");
+
+// Potential, truncation and parameters of pairs.
+struct Law {
+    // 0 Lennard-Jones, 1 WCA, 2 Yukawa, 3 Morse, 4 Gaussian, 5 table.
+    u32 potential;
+    // 0 cut, 1 energy shifted, 2 force shifted.
+    u32 truncation;
+    // Number of particle types.
+    u32 n_types;
+    // 1 where radii are per particle, 0 where one cutoff serves all pairs.
+    u32 variable;
+    // The one cutoff.
+    float cutoff;
+    // Sigma of a pair over its range, where radii are per particle.
+    float sigma_per_range;
+    // Upper limit of f/r and of a pair's energy; infinite unless overlaps are allowed.
+    float cap;
+    // Kappa of Yukawa, alpha of Morse.
+    float parameter;
+    // 48 epsilon sigma^12 of the only type, for the uniform Lennard-Jones kernel; epsilon for the scaled one.
+    float lj_repulsion;
+    // 24 epsilon sigma^6 of the only type.
+    float lj_attraction;
+    // First distance of the table over sigma.
+    float table_start;
+    // Last distance of the table over sigma.
+    float table_end;
+    // Intervals of the table per sigma.
+    float table_per_sigma;
+    // Number of intervals of the table.
+    u32 table_intervals;
+    // Quanta of order-independent sums in a unit of force, a power of two.
+    float force_quanta;
+    // Quanta of order-independent sums in a unit of energy, a power of two.
+    float energy_quanta;
+    // Epsilon, sigma, energy shift and force shift by pair of types, row-major; sigma and shifts are unused where
+    // radii are per particle.
+    float4 *pairs;
+    // Polynomial coefficients of U over epsilon in each interval of the table, in fractions of the interval.
+    float4 *table_energy;
+    // The same of the force times sigma over epsilon; the fourth is zero.
+    float4 *table_force;
+};
+static_assert(sizeof(Law) == 88, "Law differs between host and device");
+
+// Where forces and energies of particles go, in memory order. Scattering methods add to zeroed arrays; exact sums
+// go to `exact` instead and are converted afterwards.
+struct Results {
+    // Forces, `[n]`.
+    float4 *force;
+    // Half of the energies of each particle's pairs, `[n]`.
+    double *energy;
+    // Half of the virials of each particle's pairs, `[n]`.
+    double *virial;
+    // Number of neighbours, `[n]`.
+    u32 *neighbors;
+    // Sums in quanta: force x, y, z, energy, virial of each particle, `[5][n]`; the last two only with energies.
+    i64 *exact;
+};
+static_assert(sizeof(Results) == 40, "Results differs between host and device");
+
+// The particles in memory order.
+struct Particles {
+    // Position; w is the radius where radii are per particle.
+    float4 *position;
+    // Velocity; the bits of w are the type.
+    float4 *velocity;
+    // Box crossings, `[n][3]`.
+    i32 *image;
+    // Input index of each particle.
+    u32 *id;
+    // Number of particles.
+    u32 n;
+    // Zero.
+    u32 unused;
+};
+static_assert(sizeof(Particles) == 40, "Particles differs between host and device");
+
+// What went wrong first: `step << 32 | id` of the least step and id, all ones while nothing did.
+struct Status {
+    // A force is not finite.
+    u64 force;
+    // A coordinate is not finite.
+    u64 position;
+};
+static_assert(sizeof(Status) == 16, "Status differs between host and device");
+
+// Velocity Verlet and its thermostats.
+struct Integrator {
+    // The box.
+    Box3 space;
+    // Time step.
+    float dt;
+    // Largest speed, from the displacement limit; infinite without.
+    float speed_limit;
+    // 1 for Langevin dynamics.
+    u32 langevin;
+    // exp(-friction dt).
+    float damping;
+    // Seed of the thermostat, low and high half.
+    u32 seed[2];
+    // Half a time step over the mass, by type.
+    float *half_kick;
+    // Standard deviation of Langevin noise, by type.
+    float *noise;
+};
+static_assert(sizeof(Integrator) == 88, "Integrator differs between host and device");
+
+// Arguments of `integrate`.
+struct IntegrateArgs {
+    // How.
+    Integrator integrator;
+    // The particles.
+    Particles particles;
+    // Forces at the present positions.
+    float4 *force;
+    // What went wrong.
+    Status *status;
+    // The step that ends, where `finish`.
+    u64 step;
+    // 1 for the second half kick of `step`.
+    u32 finish;
+    // 1 for the first half kick and the drift of the step after.
+    u32 start;
+};
+static_assert(sizeof(IntegrateArgs) == 160, "IntegrateArgs differs between host and device");
+
+// Sums over particles.
+struct TotalSums {
+    // Kinetic energy.
+    double kinetic;
+    // Total momentum.
+    double momentum[3];
+    // Largest squared force.
+    double max_force2;
+    // Potential energy.
+    double potential;
+    // Virial.
+    double virial;
+    // Neighbours of all particles.
+    u64 neighbors;
+};
+static_assert(sizeof(TotalSums) == 64, "TotalSums differs between host and device");
+
+// Arguments of `totals`: sums over particles in input order, so that they do not depend on memory order.
+struct TotalsArgs {
+    // The particles.
+    Particles particles;
+    // Place of each input index.
+    u32 *place;
+    // Mass by type.
+    double *mass;
+    // Forces and energies; null members are left out.
+    Results results;
+    // Sums of each block, then of all, `[blocks + 1]`.
+    TotalSums *sums;
+    // What went wrong.
+    Status *status;
+    // Step the forces belong to.
+    u64 step;
+};
+static_assert(sizeof(TotalsArgs) == 120, "TotalsArgs differs between host and device");
+
+// Arguments of `rescale`: velocity rescaling after a step (Bussi, Donadio and Parrinello, 2007).
+struct RescaleArgs {
+    // The particles.
+    Particles particles;
+    // The sums whose kinetic energy counts.
+    TotalSums *sums;
+    // Standard normal draws of the batch of steps.
+    double *normal;
+    // Chi-squared draws of the batch of steps.
+    double *chi_squared;
+    // Target temperature.
+    double temperature;
+    // exp(-dt / relaxation time).
+    double decay;
+    // Which draw.
+    u64 index;
+};
+static_assert(sizeof(RescaleArgs) == 88, "RescaleArgs differs between host and device");
+
+// Arguments of `motion`: how far particles have moved from remembered positions.
+struct MotionArgs {
+    // The particles.
+    Particles particles;
+    // Box lengths.
+    float length[3];
+    // The one cutoff; zero where radii are per particle.
+    float cutoff;
+    // Remembered positions.
+    float4 *position;
+    // Remembered box crossings, `[n][3]`.
+    i32 *image;
+    // Largest squared distance (bits of an f32) and sum of distances over radii in units of 2^-20, `[2]`.
+    u64 *moved;
+};
+static_assert(sizeof(MotionArgs) == 80, "MotionArgs differs between host and device");
+
+// Arguments of `permute`: the particles in another memory order.
+struct PermuteArgs {
+    // From.
+    Particles from;
+    // To.
+    Particles to;
+    // Forces, from and to.
+    float4 *force[2];
+    // Place of origin of each particle.
+    u32 *order;
+    // Place of each input index, written.
+    u32 *place;
+};
+static_assert(sizeof(PermuteArgs) == 112, "PermuteArgs differs between host and device");
+
+// Arguments of `finish_exact`: from quanta to numbers.
+struct FinishExactArgs {
+    // From `exact` to the others.
+    Results results;
+    // Quanta in a unit of force.
+    float force_quanta;
+    // Quanta in a unit of energy.
+    float energy_quanta;
+    // Number of particles.
+    u32 n;
+    // 1 to convert energies and virials too.
+    u32 energy;
+    // 1 where overlaps are allowed.
+    u32 capped;
+    // Zero.
+    u32 unused;
+};
+static_assert(sizeof(FinishExactArgs) == 64, "FinishExactArgs differs between host and device");
+
+// The cells of one class of radii: rows of `n[0]` cells along x, `n[1]` rows to a plane, `n[2]` planes. Rows run
+// backwards in odd rows and planes (snake order), so that consecutive particles are near each other.
+struct CellClass {
+    // Where cells begin; the outermost extend to infinity.
+    float lo[3];
+    // Cells per length.
+    float per_length[3];
+    // Cells along each axis.
+    u32 n[3];
+    // Index of the first cell among those of all classes.
+    u32 first_cell;
+    // Upper limit of the radii of the class; infinite for the last.
+    float limit;
+    // Largest radius of the class now, the cutoff where there is one for all.
+    float largest;
+};
+static_assert(sizeof(CellClass) == 48, "CellClass differs between host and device");
+
+// All classes, by ascending radius.
+struct Grid {
+    // The classes.
+    CellClass classes[8];
+    // How many there are.
+    u32 n_classes;
+    // Cells of all classes.
+    u32 n_cells;
+    // First slot of each cell, `[n_cells + 1]`.
+    u32 *cell_start;
+    // Particles in cell order: position, and radius in w.
+    float4 *slot;
+    // Place of each slot's particle.
+    u32 *particle;
+};
+static_assert(sizeof(Grid) == 416, "Grid differs between host and device");
+
+// Arguments of `cell_count` and `cell_scatter`.
+struct SortArgs {
+    // Cells to sort into.
+    Grid grid;
+    // Positions, with radii in w where `variable`.
+    float4 *position;
+    // Cell of each particle, written by the count.
+    u32 *cell;
+    // Its number within the cell.
+    u32 *rank;
+    // Number of particles.
+    u32 n;
+    // 1 where radii are per particle.
+    u32 variable;
+};
+static_assert(sizeof(SortArgs) == 448, "SortArgs differs between host and device");
+
+// Arguments of `scan_u32` and `scan_u64`: exclusive prefix sums in one pass with look-back.
+struct ScanArgs {
+    // Counts, `[n]` of u32.
+    u32 *input;
+    // Sums, `[n + 1]` of u32 or u64.
+    u8 *output;
+    // State of each tile, zeroed, `[tiles + 1]`; the last is the ticket counter.
+    u64 *tiles;
+    // Number of counts.
+    u32 n;
+    // Zero.
+    u32 unused;
+};
+static_assert(sizeof(ScanArgs) == 32, "ScanArgs differs between host and device");
+
+// Arguments of `brute_*` and `cell_*`: forces of all particles.
+struct GatherArgs {
+    // The interaction.
+    Law law;
+    // The box.
+    Box3 space;
+    // The cells; only `slot` and `particle` for `brute`.
+    Grid grid;
+    // Velocities, for types in w.
+    float4 *velocity;
+    // Where results go.
+    Results results;
+    // Number of particles.
+    u32 n;
+    // Added to ranges so that roundings lose no candidate.
+    float slack;
+};
+static_assert(sizeof(GatherArgs) == 608, "GatherArgs differs between host and device");
+
+// Arguments of the kernels that list neighbours.
+struct ListArgs {
+    // The interaction, for ranges.
+    Law law;
+    // The box.
+    Box3 space;
+    // The cells; only `slot` and `particle` for `brute`.
+    Grid grid;
+    // Input index of each place.
+    u32 *id;
+    // Entries of each row, by input index; counted, or counted down while rows are filled.
+    u32 *count;
+    // Row starts, `[n + 1]`.
+    u64 *offset;
+    // Neighbours, by input index.
+    u32 *index;
+    // Periodic image of each neighbour.
+    u8 *image;
+    // Number of particles.
+    u32 n;
+    // 1 for half lists: only neighbours of larger input index.
+    u32 half;
+    // Added to ranges so that roundings lose no candidate.
+    float slack;
+    // Zero.
+    u32 unused;
+};
+static_assert(sizeof(ListArgs) == 608, "ListArgs differs between host and device");

@@ -1,0 +1,25 @@
+// One step of velocity Verlet: the second half kick of a step, the first half kick and drift of the next.
+
+#include "integrate.cuh"
+
+KERNEL(integrate, IntegrateArgs, 256) {
+    const u32 i = thread_index();
+    if (i >= a.particles.n) return;
+    Moving p = load_moving(a.particles, i);
+    const float4 force = a.force[i];
+    if (a.finish) {
+        if (!all_finite(force)) {
+            atomicMin(&a.status->force, failure(a.step, a.particles.id[i]));
+            return;
+        }
+        finish_step(a.integrator, p, force);
+    }
+    if (a.start) {
+        start_step(a.integrator, p, force, a.particles.id[i], a.step + 1);
+        if (!all_finite(p.position)) {
+            atomicMin(&a.status->position, failure(a.step + 1, a.particles.id[i]));
+            return;
+        }
+    }
+    store_moving(a.particles, i, p);
+}

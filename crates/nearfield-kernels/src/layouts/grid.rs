@@ -1,0 +1,115 @@
+//! Cells and the kernels that scan them.
+
+use super::physics::{Box3, Law, Results};
+use crate::layout::{Float4, Ptr, layouts};
+
+layouts! {
+    /// The cells of one class of radii: rows of `n[0]` cells along x, `n[1]` rows to a plane, `n[2]` planes. Rows run
+    /// backwards in odd rows and planes (snake order), so that consecutive particles are near each other.
+    pub struct CellClass {
+        /// Where cells begin; the outermost extend to infinity.
+        pub lo: [f32; 3],
+        /// Cells per length.
+        pub per_length: [f32; 3],
+        /// Cells along each axis.
+        pub n: [u32; 3],
+        /// Index of the first cell among those of all classes.
+        pub first_cell: u32,
+        /// Upper limit of the radii of the class; infinite for the last.
+        pub limit: f32,
+        /// Largest radius of the class now, the cutoff where there is one for all.
+        pub largest: f32,
+    }
+
+    /// All classes, by ascending radius.
+    pub struct Grid {
+        /// The classes.
+        pub classes: [CellClass; 8],
+        /// How many there are.
+        pub n_classes: u32,
+        /// Cells of all classes.
+        pub n_cells: u32,
+        /// First slot of each cell, `[n_cells + 1]`.
+        pub cell_start: Ptr<u32>,
+        /// Particles in cell order: position, and radius in w.
+        pub slot: Ptr<Float4>,
+        /// Place of each slot's particle.
+        pub particle: Ptr<u32>,
+    }
+
+    /// Arguments of `cell_count` and `cell_scatter`.
+    pub struct SortArgs {
+        /// Cells to sort into.
+        pub grid: Grid,
+        /// Positions, with radii in w where `variable`.
+        pub position: Ptr<Float4>,
+        /// Cell of each particle, written by the count.
+        pub cell: Ptr<u32>,
+        /// Its number within the cell.
+        pub rank: Ptr<u32>,
+        /// Number of particles.
+        pub n: u32,
+        /// 1 where radii are per particle.
+        pub variable: u32,
+    }
+
+    /// Arguments of `scan_u32` and `scan_u64`: exclusive prefix sums in one pass with look-back.
+    pub struct ScanArgs {
+        /// Counts, `[n]` of u32.
+        pub input: Ptr<u32>,
+        /// Sums, `[n + 1]` of u32 or u64.
+        pub output: Ptr<u8>,
+        /// State of each tile, zeroed, `[tiles + 1]`; the last is the ticket counter.
+        pub tiles: Ptr<u64>,
+        /// Number of counts.
+        pub n: u32,
+        /// Zero.
+        pub unused: u32,
+    }
+
+    /// Arguments of `brute_*` and `cell_*`: forces of all particles.
+    pub struct GatherArgs {
+        /// The interaction.
+        pub law: Law,
+        /// The box.
+        pub space: Box3,
+        /// The cells; only `slot` and `particle` for `brute`.
+        pub grid: Grid,
+        /// Velocities, for types in w.
+        pub velocity: Ptr<Float4>,
+        /// Where results go.
+        pub results: Results,
+        /// Number of particles.
+        pub n: u32,
+        /// Added to ranges so that roundings lose no candidate.
+        pub slack: f32,
+    }
+
+    /// Arguments of the kernels that list neighbours.
+    pub struct ListArgs {
+        /// The interaction, for ranges.
+        pub law: Law,
+        /// The box.
+        pub space: Box3,
+        /// The cells; only `slot` and `particle` for `brute`.
+        pub grid: Grid,
+        /// Input index of each place.
+        pub id: Ptr<u32>,
+        /// Entries of each row, by input index; counted, or counted down while rows are filled.
+        pub count: Ptr<u32>,
+        /// Row starts, `[n + 1]`.
+        pub offset: Ptr<u64>,
+        /// Neighbours, by input index.
+        pub index: Ptr<u32>,
+        /// Periodic image of each neighbour.
+        pub image: Ptr<u8>,
+        /// Number of particles.
+        pub n: u32,
+        /// 1 for half lists: only neighbours of larger input index.
+        pub half: u32,
+        /// Added to ranges so that roundings lose no candidate.
+        pub slack: f32,
+        /// Zero.
+        pub unused: u32,
+    }
+}

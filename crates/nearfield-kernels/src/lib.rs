@@ -1,0 +1,20 @@
+//! The device code of Nearfield: CUDA and OptiX kernels as PTX, and the structures that host and device share.
+//!
+//! Sources are in `cuda/` and `optix/`, one kernel or family of kernels a file. `cargo xtask ptx` compiles them and
+//! writes `ptx/` and the generated header `cuda/include/layouts.cuh`; both are committed, so that building needs no
+//! CUDA toolkit.
+
+pub mod kernel;
+pub mod layout;
+pub mod layouts;
+mod modules;
+
+pub use kernel::{Kernel, RayProgram};
+pub use layout::{Float4, Layout, Ptr};
+pub use modules::{MODULES, Module, RAY_MODULES};
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn dump() { std::fs::write("cuda/include/layouts.cuh", crate::layouts::header()).unwrap(); }
+}
