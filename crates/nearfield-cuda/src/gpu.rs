@@ -248,4 +248,3 @@ pub trait AccelerationStructure: Send {
     /// Bytes held on the device.
     fn bytes(&self) -> u64;
 }
-

@@ -16,5 +16,7 @@ pub use modules::{MODULES, Module, RAY_MODULES};
 #[cfg(test)]
 mod tests {
     #[test]
-    fn dump() { std::fs::write("cuda/include/layouts.cuh", crate::layouts::header()).unwrap(); }
+    fn dump() {
+        std::fs::write("cuda/include/layouts.cuh", crate::layouts::header()).unwrap();
+    }
 }
