@@ -92,8 +92,8 @@ impl DeviceContext {
     ///
     /// # Safety
     /// - `stream` is a `CUstream` of this CUDA context and does not capture a graph.
-    /// - The memory of `inputs`, `temp`, `output` and `compacted_size` is valid until the stream has done this work, and
-    ///   nothing else writes to it meanwhile.
+    /// - The memory of `inputs`, `temp`, `output` and `compacted_size` is valid until the stream has done this work,
+    ///   and nothing else writes to it meanwhile.
     /// - `temp` and `output` are 128-byte aligned, do not overlap and are as large as
     ///   [`accel_sizes`](Self::accel_sizes) says.
     /// - `output` keeps the structure: it stays valid and untouched while the handle is used.

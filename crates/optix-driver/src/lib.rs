@@ -6,8 +6,8 @@
 //! toolkit, no bindgen, no C compiler. Without the library [`OptiX::load`] returns an error that says what was looked
 //! for.
 //!
-//! CUDA contexts, streams and device memory are the caller's, passed as what the CUDA driver API calls them: `CUcontext`
-//! and `CUstream` as pointers, `CUdeviceptr` as `u64`. Any CUDA crate will do. Device programs are PTX text.
+//! CUDA contexts, streams and device memory are the caller's, passed as the CUDA driver API has them: `CUcontext` and
+//! `CUstream` as pointers, `CUdeviceptr` as `u64`. Any CUDA crate will do. Device programs are PTX text.
 //!
 //! # From load to launch
 //!
@@ -58,16 +58,16 @@
 //! # Ownership
 //!
 //! Objects are shared by [`Arc`](std::sync::Arc), keep what they were made from alive, and are destroyed when the last
-//! owner drops them, in an order that the driver accepts. They may be used from any thread. What enqueues work on device
-//! memory is `unsafe`, as the driver trusts addresses; everything else is safe, but for the CUDA context that the caller
-//! promises to keep alive.
+//! owner drops them, in an order that the driver accepts. They may be used from any thread. What enqueues work on
+//! device memory is `unsafe`, as the driver trusts addresses, and so is [`DeviceContext::new`], whose CUDA context the
+//! caller promises to keep alive; everything else is safe.
 //!
 //! # What to know
 //!
 //! - **OptiX calls cannot be captured into a CUDA graph.** Builds and launches either fail during the capture and
 //!   invalidate it, or seem to succeed and the replay reads from an illegal address. Capture plain CUDA work only.
-//! - **No RT cores are needed.** [`DeviceContext::rtcore_version`] 0 means that traversal runs in software, on data-centre
-//!   GPUs such as the H200; everything works.
+//! - **No RT cores are needed.** [`DeviceContext::rtcore_version`] 0 means that traversal runs in software, as on
+//!   data-centre GPUs such as the H200; everything works.
 //! - Launches of one pipeline must not overlap, as they share its copy of the launch parameters.
 //! - The trace depth is 1: rays start in ray generation programs only. Motion, curves, micromaps, callables and
 //!   denoising are not wrapped.
