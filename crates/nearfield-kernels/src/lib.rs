@@ -5,6 +5,7 @@
 //! CUDA toolkit.
 
 pub mod kernel;
+pub mod kernels;
 pub mod layout;
 pub mod layouts;
 mod modules;
