@@ -38,6 +38,12 @@ __device__ inline float reciprocal(float x) {
 #endif
 }
 
+// Integers in the order of the floats.
+__device__ inline u32 ordered_bits(float x) {
+    const u32 bits = __float_as_uint(x);
+    return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
+}
+
 template <class T> __device__ inline T smaller(T a, T b) {
     return b < a ? b : a;
 }

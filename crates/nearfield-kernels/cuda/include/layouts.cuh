@@ -135,7 +135,7 @@ struct IntegrateArgs {
     float4 *force;
     // What went wrong.
     Status *status;
-    // The step that ends, where `finish`.
+    // The step that the forces belong to.
     u64 step;
     // 1 for the second half kick of `step`.
     u32 finish;
@@ -230,6 +230,42 @@ struct PermuteArgs {
     u32 *place;
 };
 static_assert(sizeof(PermuteArgs) == 112, "PermuteArgs differs between host and device");
+
+// Arguments of `morton_count` and `morton_scatter`: the order along the Morton curve.
+struct MortonArgs {
+    // Positions.
+    float4 *position;
+    // Cell of each particle, written by the count.
+    u32 *cell;
+    // Its number within the cell.
+    u32 *rank;
+    // Particles of each cell, zeroed, `[8^bits]`.
+    u32 *count;
+    // First place of each cell.
+    u32 *start;
+    // The particle at each place, written by the scatter.
+    u32 *order;
+    // Where cells begin; the outermost extend to infinity.
+    float lo[3];
+    // Cells per length.
+    float per_length[3];
+    // Cells along an axis are two to this power, at most 10.
+    u32 bits;
+    // Number of particles.
+    u32 n;
+};
+static_assert(sizeof(MortonArgs) == 80, "MortonArgs differs between host and device");
+
+// Arguments of `bounds`.
+struct BoundsArgs {
+    // Positions, at least one.
+    float4 *position;
+    // Low and high corner by `ordered_bits`, `[6]`; low all ones and high zeros before.
+    u32 *bounds;
+    // Number of particles.
+    u64 n;
+};
+static_assert(sizeof(BoundsArgs) == 24, "BoundsArgs differs between host and device");
 
 // Arguments of `finish_exact`: from quanta to numbers.
 struct FinishExactArgs {
