@@ -3,8 +3,8 @@
 use crate::{
     Kernel,
     layouts::{
-        BoundsArgs, FinishExactArgs, IntegrateArgs, MortonArgs, MotionArgs, PermuteArgs, RescaleArgs, SampleArgs,
-        ScanArgs, TotalsArgs,
+        BoundsArgs, FinishExactArgs, GatherArgs, IntegrateArgs, ListArgs, MortonArgs, MotionArgs, PermuteArgs,
+        RescaleArgs, SampleArgs, ScanArgs, SortArgs, TotalsArgs,
     },
 };
 
@@ -39,3 +39,51 @@ pub const SCAN_U32: Kernel<ScanArgs> = Kernel::new("scan", "scan_u32", 256);
 pub const SCAN_U64: Kernel<ScanArgs> = Kernel::new("scan", "scan_u64", 256);
 /// Counts that a block of the scans takes.
 pub const SCAN_TILE: usize = 2048;
+
+/// Particles by cell.
+pub const CELL_COUNT: Kernel<SortArgs> = Kernel::new("cells", "cell_count", 256);
+/// Particles in cell order.
+pub const CELL_SCATTER: Kernel<SortArgs> = Kernel::new("cells", "cell_scatter", 256);
+
+/// The kernels of a method that sums forces, by what they are for.
+pub struct ForceKernels {
+    /// One type of Lennard-Jones and one cutoff, forces only.
+    pub uniform: Kernel<GatherArgs>,
+    /// One type of Lennard-Jones whose sigma is proportional to the range, forces only.
+    pub scaled: Kernel<GatherArgs>,
+    /// Any law, forces only.
+    pub any: Kernel<GatherArgs>,
+    /// Any law.
+    pub any_energy: Kernel<GatherArgs>,
+    /// Any law, sums independent of order, forces only.
+    pub exact: Kernel<GatherArgs>,
+    /// Any law, sums independent of order.
+    pub exact_energy: Kernel<GatherArgs>,
+}
+
+macro_rules! force_kernels {
+    ($module:literal, $prefix:literal) => {
+        ForceKernels {
+            uniform: Kernel::new($module, concat!($prefix, "_uniform"), 128),
+            scaled: Kernel::new($module, concat!($prefix, "_scaled"), 128),
+            any: Kernel::new($module, concat!($prefix, "_any"), 128),
+            any_energy: Kernel::new($module, concat!($prefix, "_any_energy"), 128),
+            exact: Kernel::new($module, concat!($prefix, "_exact"), 128),
+            exact_energy: Kernel::new($module, concat!($prefix, "_exact_energy"), 128),
+        }
+    };
+}
+
+/// Forces by testing all pairs, a warp for each 8 particles.
+pub const BRUTE_FORCES: ForceKernels = force_kernels!("brute", "brute");
+/// Forces by cells, a warp for each 8 particles.
+pub const CELL_FORCES: ForceKernels = force_kernels!("cell_forces", "cell");
+
+/// Entries of each row, by testing all pairs.
+pub const BRUTE_LIST_COUNT: Kernel<ListArgs> = Kernel::new("lists", "brute_list_count", 128);
+/// Entries, by testing all pairs.
+pub const BRUTE_LIST_FILL: Kernel<ListArgs> = Kernel::new("lists", "brute_list_fill", 128);
+/// Entries of each row, by cells.
+pub const CELL_LIST_COUNT: Kernel<ListArgs> = Kernel::new("lists", "cell_list_count", 128);
+/// Entries, by cells.
+pub const CELL_LIST_FILL: Kernel<ListArgs> = Kernel::new("lists", "cell_list_fill", 128);

@@ -14,7 +14,7 @@ impl Loaded {
         self.results.prepare(self.state.len(), quantities.energy)?;
         let Self { plan, physics, state, results, structure, report, .. } = self;
         let query = Query { plan, physics, state, results, energy: quantities.energy, report };
-        structure.evaluate(query)?;
+        structure.evaluate(&gpu, query)?;
         self.report.evaluations += 1;
         let costs =
             self.timeline.end(&*gpu, &mut self.report, self.policy.needs_cost() && self.plan.method.uses_bvh())?;
