@@ -62,8 +62,9 @@ inline float __fmaf_rn(float a, float b, float c) { return fmaf(a, b, c); }
 inline double __dadd_rn(double a, double b) { return a + b; }
 inline double __dmul_rn(double a, double b) { return a * b; }
 inline double __fma_rn(double a, double b, double c) { return fma(a, b, c); }
-inline float rsqrtf(float x) { return 1.0f / sqrtf(x); }
-inline double rsqrt(double x) { return 1.0 / sqrt(x); }
+// Templates, because newer C libraries have functions of these names.
+template <class T> T rsqrtf(T x) { return 1.0f / sqrtf(x); }
+template <class T> T rsqrt(T x) { return 1.0 / sqrt(x); }
 inline float __saturatef(float x) { return x > 0.0f ? (x < 1.0f ? x : 1.0f) : 0.0f; }
 #ifdef __APPLE__
 inline void sincos(double x, double* s, double* c) { *s = sin(x), *c = cos(x); }
