@@ -51,6 +51,14 @@ inline long long __float2ll_rd(float x) { return emulator::rounded(floorf(x)); }
 inline int __double2int_rn(double x) { return emulator::rounded_int(x); }
 inline long long __double2ll_rn(double x) { return emulator::rounded(x); }
 inline float __double2float_rn(double x) { return (float)x; }
+inline float __double2float_ru(double x) {
+    const float nearest = (float)x;
+    return (double)nearest < x ? nextafterf(nearest, INFINITY) : nearest;
+}
+inline float __double2float_rd(double x) {
+    const float nearest = (float)x;
+    return (double)nearest > x ? nextafterf(nearest, -INFINITY) : nearest;
+}
 
 inline float __fadd_rn(float a, float b) { return a + b; }
 inline float __fsub_rn(float a, float b) { return a - b; }
