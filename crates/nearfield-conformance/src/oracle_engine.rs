@@ -290,7 +290,7 @@ impl Engine for OracleEngine {
         Ok(totals)
     }
 
-    fn snapshot(&mut self, particles: &mut Particles) {
+    fn snapshot(&mut self, particles: &mut Particles) -> Result<()> {
         if let Some(loaded) = &self.loaded {
             particles.clone_from(&loaded.system.particles);
         }
@@ -298,12 +298,14 @@ impl Engine for OracleEngine {
             particles.position.axes_mut().into_iter().for_each(|axis| axis.reverse());
             particles.velocity.axes_mut().into_iter().for_each(|axis| axis.reverse());
         }
+        Ok(())
     }
 
-    fn per_particle(&mut self, out: &mut PerParticle) {
+    fn per_particle(&mut self, out: &mut PerParticle) -> Result<()> {
         if let Some(loaded) = &self.loaded {
             out.clone_from(&loaded.per_particle);
         }
+        Ok(())
     }
 
     fn neighbor_list(&mut self, request: ListRequest) -> Result<NeighborList> {

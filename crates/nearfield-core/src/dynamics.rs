@@ -75,18 +75,25 @@ impl Dynamics {
     }
 }
 
+/// The random numbers of [`rescale_factor`]: a standard normal one, and the sum of squares of as many as there are
+/// other degrees of freedom.
+pub fn rescale_draws(n: usize, seed: u64, step: u64) -> (f64, f64) {
+    let n_dof = if n > 1 { 3.0 * n as f64 - 3.0 } else { 3.0 };
+    let mut random = PhiloxRng::new(seed, Stream::Rescale, step);
+    let normal = StandardNormal.sample(&mut random);
+    let rest = ChiSquared::new(n_dof - 1.0).expect("at least two other degrees of freedom").sample(&mut random);
+    (normal, rest)
+}
+
 /// The factor of velocity rescaling after a step (Bussi, Donadio and Parrinello, J. Chem. Phys. 126, 014101 (2007),
 /// eq. A7): it takes the kinetic energy towards `temperature` over relaxation times, with the fluctuations of the
 /// canonical ensemble. `ratio` = dt over the relaxation time. Momentum is conserved, so n particles have 3n - 3
 /// degrees of freedom. A system at rest stays so.
 pub fn rescale_factor(kinetic: f64, n: usize, temperature: f64, ratio: f64, seed: u64, step: u64) -> f64 {
-    let n_dof = if n > 1 { 3.0 * n as f64 - 3.0 } else { 3.0 };
     if kinetic <= 0.0 {
         return 1.0;
     }
-    let mut random = PhiloxRng::new(seed, Stream::Rescale, step);
-    let r1: f64 = StandardNormal.sample(&mut random);
-    let rest = ChiSquared::new(n_dof - 1.0).expect("at least two other degrees of freedom").sample(&mut random);
+    let (r1, rest) = rescale_draws(n, seed, step);
     let target = 0.5 * temperature / kinetic;
     let c = (-ratio).exp();
     let square = c + (1.0 - c) * target * (r1 * r1 + rest) + 2.0 * r1 * (c * (1.0 - c) * target).sqrt();

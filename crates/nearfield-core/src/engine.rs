@@ -157,21 +157,34 @@ pub trait Engine: Send {
     fn advance(&mut self, dynamics: &Dynamics, from: u64, steps: u64, quantities: Quantities) -> Result<Totals>;
 
     /// How the particles lie in memory. An engine that never moves them keeps this default.
-    fn memory_order(&self) -> MemoryOrder {
-        MemoryOrder::default()
+    ///
+    /// # Errors
+    /// [`crate::Error::Device`].
+    fn memory_order(&self) -> Result<MemoryOrder> {
+        Ok(MemoryOrder::default())
     }
 
     /// Arranges the particles as another engine had them, right after [`Engine::load`] of its snapshot: both then
     /// continue bit for bit alike. Precondition: `order.ids` is a permutation of the particles.
-    fn set_memory_order(&mut self, order: &MemoryOrder) {
+    ///
+    /// # Errors
+    /// [`crate::Error::Device`].
+    fn set_memory_order(&mut self, order: &MemoryOrder) -> Result<()> {
         let _ = order;
+        Ok(())
     }
 
     /// Copies positions, velocities, types and image counts out.
-    fn snapshot(&mut self, particles: &mut Particles);
+    ///
+    /// # Errors
+    /// [`crate::Error::Device`].
+    fn snapshot(&mut self, particles: &mut Particles) -> Result<()>;
 
     /// Copies the results of the last evaluation out.
-    fn per_particle(&mut self, out: &mut PerParticle);
+    ///
+    /// # Errors
+    /// [`crate::Error::Device`].
+    fn per_particle(&mut self, out: &mut PerParticle) -> Result<()>;
 
     /// The neighbour list at the current positions.
     ///

@@ -34,7 +34,7 @@ fn every_method_gives_the_forces_and_energies_of_the_oracle() {
                 let totals = engine.evaluate(Quantities::ALL).unwrap();
                 assert_eq!(totals.pairs, oracle.pairs, "{method} {images}");
                 let mut results = PerParticle::default();
-                engine.per_particle(&mut results);
+                engine.per_particle(&mut results).expect("a copy");
                 assert_eq!(results.neighbors, oracle.neighbors, "{method} {images}");
                 let worst = results
                     .force
@@ -60,7 +60,7 @@ fn all_exact_methods_run_the_same_trajectory_bit_for_bit() {
         engine.load(&system, &Plan { deterministic: true, ..Plan::new(method) }).unwrap();
         let totals = engine.advance(&Dynamics::nve(0.004), 0, 50, Quantities::ALL).unwrap();
         let mut particles = Particles::default();
-        engine.snapshot(&mut particles);
+        engine.snapshot(&mut particles).expect("a copy");
         states.push((method, totals, particles));
     }
     for (method, totals, particles) in &states[1..] {

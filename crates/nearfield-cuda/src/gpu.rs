@@ -157,6 +157,9 @@ pub type Aabb = [f32; 6];
 
 /// Ray tracing of infinitesimal rays against boxes.
 pub trait RayTracing {
+    /// What traces, for reports.
+    fn describe(&self) -> String;
+
     /// An empty acceleration structure.
     ///
     /// # Errors
@@ -248,4 +251,3 @@ pub trait AccelerationStructure: Send {
     /// Bytes held on the device.
     fn bytes(&self) -> u64;
 }
-

@@ -7,13 +7,12 @@ KERNEL(integrate, IntegrateArgs, 256) {
     if (i >= a.particles.n) return;
     Moving p = load_moving(a.particles, i);
     const float4 force = a.force[i];
-    if (a.finish) {
-        if (!all_finite(force)) {
-            atomicMin(&a.status->force, failure(a.step, a.particles.id[i]));
-            return;
-        }
-        finish_step(a.integrator, p, force);
+    // A particle that has failed is left where it was, so that coordinates stay finite until the run is stopped.
+    if (!all_finite(force)) {
+        atomicMin(&a.status->force, failure(a.step, a.particles.id[i]));
+        return;
     }
+    if (a.finish) finish_step(a.integrator, p, force);
     if (a.start) {
         start_step(a.integrator, p, force, a.particles.id[i], a.step + 1);
         if (!all_finite(p.position)) {

@@ -247,12 +247,15 @@ impl Simulation {
     }
 
     /// The system at the present step.
-    pub fn system(&mut self) -> &System {
+    ///
+    /// # Errors
+    /// When the device fails.
+    pub fn system(&mut self) -> Result<&System> {
         if !self.in_step {
-            self.engine.snapshot(&mut self.system.particles);
+            self.engine.snapshot(&mut self.system.particles)?;
             self.in_step = true;
         }
-        &self.system
+        Ok(&self.system)
     }
 
     /// Forces, energies and neighbour counts at the present step.
@@ -262,7 +265,7 @@ impl Simulation {
     pub fn per_particle(&mut self) -> Result<PerParticle> {
         self.thermo()?;
         let mut out = PerParticle::default();
-        self.engine.per_particle(&mut out);
+        self.engine.per_particle(&mut out)?;
         Ok(out)
     }
 
@@ -302,9 +305,12 @@ impl Simulation {
     }
 
     /// The state to continue from, bit for bit.
-    pub fn checkpoint(&mut self) -> Checkpoint {
-        let (method, step, order) = (self.plan.method, self.step, self.engine.memory_order());
-        Checkpoint::new(self.system(), method, step, order)
+    ///
+    /// # Errors
+    /// When the device fails.
+    pub fn checkpoint(&mut self) -> Result<Checkpoint> {
+        let (method, step, order) = (self.plan.method, self.step, self.engine.memory_order()?);
+        Ok(Checkpoint::new(self.system()?, method, step, order))
     }
 
     /// Continues from a checkpoint of the same number of particles instead of the present state.
@@ -315,7 +321,7 @@ impl Simulation {
         checkpoint.apply(&mut self.system)?;
         self.earlier = self.report();
         self.engine.load(&self.system, &self.plan)?;
-        self.engine.set_memory_order(&checkpoint.order);
+        self.engine.set_memory_order(&checkpoint.order)?;
         self.step = checkpoint.step;
         self.in_step = true;
         self.thermo = None;

@@ -127,7 +127,7 @@ fn lammps(data: &Path, plan: &Plan, case: &str, file: &str, boundary: Boundary) 
     near("virial", totals.virial, number("virial_sum_r_dot_f")?, 1e-6 * 24.0 * energy.abs())?;
 
     let mut results = PerParticle::default();
-    engine.per_particle(&mut results);
+    engine.per_particle(&mut results).expect("a copy");
     let text = fs::read_to_string(data.join(format!("lammps/{case}.forces")))?;
     let tolerance = 1e-5 * number("rms_force")?;
     let mut largest = 0.0f64;

@@ -63,7 +63,7 @@ pub fn run(arguments: &Forces) -> Result<(), Failure> {
     let seconds = start.elapsed().as_secs_f64();
     if let Some(path) = &arguments.output {
         let mut results = PerParticle::default();
-        engine.per_particle(&mut results);
+        engine.per_particle(&mut results)?;
         io::write_forces_csv(path, &results)?;
     }
     let tail = if config.interaction.tail_correction {

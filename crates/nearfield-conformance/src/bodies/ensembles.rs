@@ -45,7 +45,7 @@ pub fn langevin_velocities_of_free_particles_follow_maxwell_and_boltzmann(factor
         let (mut particles, mut samples) = (Particles::default(), Vec::new());
         for round in 0..6 {
             engine.advance(&dynamics, 30 * round, 30, Quantities::FORCES).expect("a run");
-            engine.snapshot(&mut particles);
+            engine.snapshot(&mut particles).expect("a copy");
             samples.extend(scaled_velocities(&system, &particles, temperature));
         }
         assert_standard_normal(samples, &format!("{plan:?}"));
@@ -117,7 +117,7 @@ pub fn rescaling_keeps_a_liquid_at_its_temperature_with_maxwell_boltzmann_veloci
         for round in 0..12 {
             let totals = engine.advance(&dynamics, 400 + 100 * round, 100, Quantities::FORCES).expect("a run");
             found.push(2.0 * totals.kinetic_energy / degrees as f64);
-            engine.snapshot(&mut particles);
+            engine.snapshot(&mut particles).expect("a copy");
             samples.extend(scaled_velocities(&system, &particles, temperature));
         }
         let (mean, error) = mean_and_error(&found);

@@ -24,7 +24,7 @@ fn with_and_without_determinism(plans: Vec<Plan>) -> Vec<Plan> {
 fn compare(engine: &mut dyn Engine, expected: &Expected, what: &str) {
     let totals = engine.evaluate(Quantities::ALL).unwrap_or_else(|error| panic!("{what}: {error}"));
     let mut found = PerParticle::default();
-    engine.per_particle(&mut found);
+    engine.per_particle(&mut found).expect("a copy");
     let reference = &expected.reference;
     assert_eq!((found.force.len(), found.energy.len()), (reference.force.len(), reference.energy.len()), "{what}");
     for (i, force) in found.force.iter().enumerate() {
@@ -129,7 +129,7 @@ pub fn forces_sum_to_zero(factory: Factory) {
     plans::run(&mut *factory(), &system, &with_and_without_determinism(plans::every()), |engine, plan| {
         engine.evaluate(Quantities::FORCES).expect("an evaluation");
         let mut found = PerParticle::default();
-        engine.per_particle(&mut found);
+        engine.per_particle(&mut found).expect("a copy");
         // The roundings of both sides of a pair are equal and opposite; those of the sums remain.
         let allowed: f64 = f64::from(f32::EPSILON) * expected.reference.magnitude.iter().sum::<f64>();
         for (axis, f) in found.force.axes().into_iter().enumerate() {
@@ -146,9 +146,9 @@ pub fn asking_for_forces_only_changes_no_force(factory: Factory) {
     plans::run(&mut *factory(), &system, &with_and_without_determinism(plans::each_structure()), |engine, plan| {
         let (mut full, mut forces) = (PerParticle::default(), PerParticle::default());
         engine.evaluate(Quantities::ALL).expect("an evaluation");
-        engine.per_particle(&mut full);
+        engine.per_particle(&mut full).expect("a copy");
         let totals = engine.evaluate(Quantities::FORCES).expect("an evaluation");
-        engine.per_particle(&mut forces);
+        engine.per_particle(&mut forces).expect("a copy");
         assert!(forces.energy.is_empty() && forces.neighbors.is_empty(), "{plan:?}");
         assert_eq!((totals.potential_energy, totals.virial, totals.pairs), (0.0, 0.0, 0), "{plan:?}");
         if plan.deterministic {
@@ -182,7 +182,7 @@ pub fn kinetic_energy_momentum_and_largest_force_are_those_of_the_particles(fact
             assert!((totals.momentum[axis] - expected.momentum[axis]).abs() < scale, "{plan:?}: {totals:?}");
         }
         let mut found = PerParticle::default();
-        engine.per_particle(&mut found);
+        engine.per_particle(&mut found).expect("a copy");
         let norm = |f: [f32; 3]| f.iter().map(|&f| f64::from(f).powi(2)).sum::<f64>().sqrt();
         let largest = found.force.iter().map(norm).fold(0.0, f64::max);
         assert!((totals.max_force / largest - 1.0).abs() < 1e-5, "{plan:?}: {} for {largest}", totals.max_force);
@@ -232,7 +232,7 @@ pub fn deterministic_forces_are_bitwise_equal_between_all_plans_and_repeats(fact
             for _ in 0..if plan.order == Order::Morton { 2 } else { 1 } {
                 engine.evaluate(Quantities::FORCES).expect("an evaluation");
                 let mut found = PerParticle::default();
-                engine.per_particle(&mut found);
+                engine.per_particle(&mut found).expect("a copy");
                 let (expected, method) = first.get_or_insert((found.clone(), plan.method));
                 for (i, (a, b)) in expected.force.iter().zip(found.force.iter()).enumerate() {
                     // As numbers: an empty sum may be either zero.

@@ -13,7 +13,7 @@ pub fn every_structure_finds_the_same_pairs_among_a_hundred_thousand_particles(f
     plans::run(&mut *factory(), &system, &plans, |engine, plan| {
         let totals = engine.evaluate(Quantities::ALL).expect("an evaluation");
         let mut found = PerParticle::default();
-        engine.per_particle(&mut found);
+        engine.per_particle(&mut found).expect("a copy");
         let counted = (totals.pairs, found.neighbors);
         assert!(*counts.get_or_insert_with(|| counted.clone()) == counted, "{plan:?} counts other neighbours");
         if !listed.contains(&plan.method) {

@@ -26,7 +26,7 @@ pub fn no_particle_moves_further_than_the_limit_and_overlapping_starts_survive(f
             let (mut before, mut after) = (system.particles.clone(), Particles::default());
             for step in 0..30 {
                 engine.advance(&dynamics, step, 1, Quantities::FORCES).unwrap_or_else(|e| panic!("{plan:?}: {e}"));
-                engine.snapshot(&mut after);
+                engine.snapshot(&mut after).expect("a copy");
                 for i in 0..after.len() {
                     let moved: f64 = (0..3)
                         .map(|a| {
@@ -73,9 +73,9 @@ pub fn a_list_beyond_the_memory_budget_gives_the_same_forces_and_trajectory(fact
     plans::run(&mut *factory(), &system, &plans::deterministic(plans), |engine: &mut dyn Engine, plan| {
         let (mut forces, mut end) = (PerParticle::default(), Particles::default());
         engine.evaluate(Quantities::ALL).unwrap_or_else(|error| panic!("{plan:?}: {error}"));
-        engine.per_particle(&mut forces);
+        engine.per_particle(&mut forces).expect("a copy");
         engine.advance(&Dynamics::nve(0.004), 0, 20, Quantities::FORCES).expect("a run");
-        engine.snapshot(&mut end);
+        engine.snapshot(&mut end).expect("a copy");
         let batched = engine.report().batched_evaluations;
         assert_eq!(batched > 0, plan.memory_budget < roomy.memory_budget, "{plan:?}: {batched} in batches");
         let (first, trajectory) = expected.get_or_insert_with(|| (forces.clone(), end.clone()));

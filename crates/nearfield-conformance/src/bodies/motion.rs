@@ -10,7 +10,7 @@ use rand::RngExt;
 
 fn snapshot(engine: &mut dyn Engine) -> Particles {
     let mut particles = Particles::default();
-    engine.snapshot(&mut particles);
+    engine.snapshot(&mut particles).expect("a copy");
     particles
 }
 
@@ -261,7 +261,7 @@ pub fn continuing_from_a_snapshot_equals_not_having_stopped(factory: Factory) {
         plans::run(&mut *factory(), &system, &plans::deterministic(plans::each_structure()), |engine, plan| {
             engine.advance(&dynamics, 0, 10, Quantities::FORCES).expect("a run");
             let mut half = system.clone();
-            engine.snapshot(&mut half.particles);
+            engine.snapshot(&mut half.particles).expect("a copy");
             engine.advance(&dynamics, 10, 4, Quantities::ALL).expect("a run");
             engine.advance(&dynamics, 14, 6, Quantities::FORCES).expect("a run");
             let whole = snapshot(engine);

@@ -102,7 +102,7 @@ pub fn counts_of_neighbors_equal_the_oracle(factory: Factory) {
             let totals = engine.evaluate(Quantities::ALL).unwrap_or_else(|error| panic!("{name}, {plan:?}: {error}"));
             assert_eq!(totals.pairs, expected.pairs, "{name}, {plan:?}");
             let mut found = Default::default();
-            engine.per_particle(&mut found);
+            engine.per_particle(&mut found).expect("a copy");
             assert_eq!(found.neighbors, expected.neighbors, "{name}, {plan:?}");
         });
     }
@@ -116,7 +116,7 @@ pub fn a_list_after_a_run_is_that_of_the_present_positions(factory: Factory) {
     let start = system.particles.clone();
     plans::run(&mut *factory(), &system.clone(), &plans, |engine: &mut dyn Engine, plan| {
         engine.advance(&Dynamics::nve(0.004), 0, 25, Quantities::FORCES).expect("a run");
-        engine.snapshot(&mut moved);
+        engine.snapshot(&mut moved).expect("a copy");
         assert_ne!(moved.position, start.position, "{plan:?}: nothing moved");
         system.particles.clone_from(&moved);
         let expected = oracle::pairs(&system.sim_box, &system.particles, &system.radii);

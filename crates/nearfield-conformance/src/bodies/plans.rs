@@ -42,7 +42,7 @@ pub fn loading_forgets_the_system_before(factory: Factory) {
             for (engine, out) in [(&mut fresh, &mut expected), (&mut used, &mut found)] {
                 engine.load(system, &plan).expect("a load");
                 engine.advance(&Dynamics::nve(0.004), 0, 3, Quantities::ALL).expect("a run");
-                engine.per_particle(out);
+                engine.per_particle(out).expect("a copy");
             }
             assert!(found == expected, "{plan:?}: an engine remembers an earlier system");
             assert_eq!(used.report().evaluations, fresh.report().evaluations, "{plan:?}");

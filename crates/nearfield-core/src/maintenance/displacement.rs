@@ -24,6 +24,10 @@ impl Policy for Displacement {
         true
     }
 
+    fn needs_cost(&self) -> bool {
+        false
+    }
+
     fn decide(&mut self, motion: Motion) -> Action {
         if motion.mean > MEAN_DISPLACEMENT || self.since_build >= MAX_STEPS { Action::Build } else { Action::Refit }
     }

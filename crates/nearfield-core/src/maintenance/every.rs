@@ -8,6 +8,10 @@ use crate::engine::StepCost;
 pub struct Every;
 
 impl Policy for Every {
+    fn needs_cost(&self) -> bool {
+        false
+    }
+
     fn decide(&mut self, _: Motion) -> Action {
         Action::Build
     }

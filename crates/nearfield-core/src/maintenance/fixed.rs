@@ -18,6 +18,10 @@ impl Fixed {
 }
 
 impl Policy for Fixed {
+    fn needs_cost(&self) -> bool {
+        false
+    }
+
     fn decide(&mut self, _: Motion) -> Action {
         if self.since_build >= self.period { Action::Build } else { Action::Refit }
     }

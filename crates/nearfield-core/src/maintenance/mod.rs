@@ -43,6 +43,12 @@ pub trait Policy: Send {
         false
     }
 
+    /// Whether decisions depend on what steps cost. Where they do not, an engine need not wait for its clock and may
+    /// report costs of zero.
+    fn needs_cost(&self) -> bool {
+        true
+    }
+
     /// Decides for the next evaluation. The first one always builds without asking.
     fn decide(&mut self, motion: Motion) -> Action;
 

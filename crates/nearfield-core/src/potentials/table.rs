@@ -79,6 +79,28 @@ impl Table {
         self.end
     }
 
+    /// The first tabulated distance, in units of σ.
+    pub fn start(&self) -> f64 {
+        self.start
+    }
+
+    /// Intervals of the even grid per σ.
+    pub fn intervals_per_sigma(&self) -> f64 {
+        self.inverse_step
+    }
+
+    /// Polynomial coefficients of U and of F on each interval of the even grid, in powers of the fraction of the
+    /// interval: what a device that interpolates in f32 stores, for differences of nodes would lose its digits.
+    pub fn polynomials(&self) -> impl ExactSizeIterator<Item = ([f64; 4], [f64; 3])> + '_ {
+        let h = 1.0 / self.inverse_step;
+        self.nodes.windows(2).map(move |nodes| {
+            let [[u0, f0], [u1, f1]] = [nodes[0], nodes[1]];
+            let (a, b) = (-f0 * h - (u1 - u0), f1 * h + (u1 - u0));
+            let u = [u0, (u1 - u0) + a, b - 2.0 * a, a - b];
+            (u, [-u[1] / h, -2.0 * u[2] / h, -3.0 * u[3] / h])
+        })
+    }
+
     /// (U, F) at distance `x`, in units of ε and σ.
     #[inline]
     fn interpolate(&self, x: f64) -> [f64; 2] {
@@ -118,5 +140,24 @@ impl PairPotential for Table {
     fn energy<T: Real>(&self, r2: T, epsilon: T, sigma: T) -> T {
         let [u, _] = self.interpolate((r2.sqrt() / sigma).to_f64());
         epsilon * T::of(u)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn polynomials_are_the_interpolation() {
+        let table = Table::new(&[[0.5, 3.0, 4.0], [1.0, 1.5, 2.0], [2.5, 0.0, 0.5]]).unwrap();
+        for (k, (u, f)) in table.polynomials().enumerate() {
+            for t in [0.0, 0.25, 0.5, 0.99] {
+                let [expected_u, expected_f] =
+                    table.interpolate(table.start() + (k as f64 + t) / table.intervals_per_sigma());
+                assert!((u[0] + t * (u[1] + t * (u[2] + t * u[3])) - expected_u).abs() < 1e-9);
+                assert!((f[0] + t * (f[1] + t * f[2]) - expected_f).abs() < 1e-6);
+            }
+        }
+        assert_eq!(table.polynomials().len(), N_NODES - 1);
     }
 }

@@ -88,28 +88,31 @@ impl Engine for CpuEngine {
         self.loaded()?.advance(dynamics, from, steps, quantities)
     }
 
-    fn memory_order(&self) -> MemoryOrder {
+    fn memory_order(&self) -> Result<MemoryOrder> {
         let order = |loaded: &Loaded| MemoryOrder { ids: loaded.state.id.clone(), sorted_at: loaded.sorted_at };
-        self.loaded.as_deref().map(order).unwrap_or_default()
+        Ok(self.loaded.as_deref().map(order).unwrap_or_default())
     }
 
-    fn set_memory_order(&mut self, order: &MemoryOrder) {
+    fn set_memory_order(&mut self, order: &MemoryOrder) -> Result<()> {
         if let Some(loaded) = self.loaded.as_deref_mut().filter(|_| !order.ids.is_empty()) {
             loaded.state.reorder(&order.ids);
             loaded.sorted_at = order.sorted_at;
         }
+        Ok(())
     }
 
-    fn snapshot(&mut self, particles: &mut Particles) {
+    fn snapshot(&mut self, particles: &mut Particles) -> Result<()> {
         if let Some(loaded) = &self.loaded {
             loaded.state.copy_to(particles);
         }
+        Ok(())
     }
 
-    fn per_particle(&mut self, out: &mut PerParticle) {
+    fn per_particle(&mut self, out: &mut PerParticle) -> Result<()> {
         if let Some(loaded) = &self.loaded {
             loaded.copy_results(out);
         }
+        Ok(())
     }
 
     fn neighbor_list(&mut self, request: ListRequest) -> Result<NeighborList> {

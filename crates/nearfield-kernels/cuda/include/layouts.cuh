@@ -135,7 +135,7 @@ struct IntegrateArgs {
     float4 *force;
     // What went wrong.
     Status *status;
-    // The step that ends, where `finish`.
+    // The step that the forces belong to.
     u64 step;
     // 1 for the second half kick of `step`.
     u32 finish;
@@ -231,6 +231,55 @@ struct PermuteArgs {
 };
 static_assert(sizeof(PermuteArgs) == 112, "PermuteArgs differs between host and device");
 
+// Arguments of `morton_count` and `morton_scatter`: the order along the Morton curve.
+struct MortonArgs {
+    // Positions.
+    float4 *position;
+    // Cell of each particle, written by the count.
+    u32 *cell;
+    // Its number within the cell.
+    u32 *rank;
+    // Particles of each cell, zeroed, `[8^bits]`.
+    u32 *count;
+    // First place of each cell.
+    u32 *start;
+    // The particle at each place, written by the scatter.
+    u32 *order;
+    // Where cells begin; the outermost extend to infinity.
+    float lo[3];
+    // Cells per length.
+    float per_length[3];
+    // Cells along an axis are two to this power, at most 10.
+    u32 bits;
+    // Number of particles.
+    u32 n;
+};
+static_assert(sizeof(MortonArgs) == 80, "MortonArgs differs between host and device");
+
+// Arguments of `bounds`.
+struct BoundsArgs {
+    // Positions, at least one.
+    float4 *position;
+    // Low and high corner by `ordered_bits`, `[6]`; low all ones and high zeros before.
+    u32 *bounds;
+    // Number of particles.
+    u64 n;
+};
+static_assert(sizeof(BoundsArgs) == 24, "BoundsArgs differs between host and device");
+
+// Arguments of `sample`: positions at even strides.
+struct SampleArgs {
+    // Positions.
+    float4 *position;
+    // Sampled ones.
+    float4 *sample;
+    // Number of particles.
+    u64 n;
+    // Size of the sample, at most `n`.
+    u64 n_sampled;
+};
+static_assert(sizeof(SampleArgs) == 32, "SampleArgs differs between host and device");
+
 // Arguments of `finish_exact`: from quanta to numbers.
 struct FinishExactArgs {
     // From `exact` to the others.
@@ -257,8 +306,12 @@ struct CellClass {
     float lo[3];
     // Cells per length.
     float per_length[3];
+    // Lengths of a cell.
+    float width[3];
     // Cells along each axis.
     u32 n[3];
+    // Zero.
+    u32 unused;
     // Index of the first cell among those of all classes.
     u32 first_cell;
     // Upper limit of the radii of the class; infinite for the last.
@@ -266,7 +319,7 @@ struct CellClass {
     // Largest radius of the class now, the cutoff where there is one for all.
     float largest;
 };
-static_assert(sizeof(CellClass) == 48, "CellClass differs between host and device");
+static_assert(sizeof(CellClass) == 64, "CellClass differs between host and device");
 
 // All classes, by ascending radius.
 struct Grid {
@@ -283,7 +336,7 @@ struct Grid {
     // Place of each slot's particle.
     u32 *particle;
 };
-static_assert(sizeof(Grid) == 416, "Grid differs between host and device");
+static_assert(sizeof(Grid) == 544, "Grid differs between host and device");
 
 // Arguments of `cell_count` and `cell_scatter`.
 struct SortArgs {
@@ -300,7 +353,7 @@ struct SortArgs {
     // 1 where radii are per particle.
     u32 variable;
 };
-static_assert(sizeof(SortArgs) == 448, "SortArgs differs between host and device");
+static_assert(sizeof(SortArgs) == 576, "SortArgs differs between host and device");
 
 // Arguments of `scan_u32` and `scan_u64`: exclusive prefix sums in one pass with look-back.
 struct ScanArgs {
@@ -334,7 +387,7 @@ struct GatherArgs {
     // Added to ranges so that roundings lose no candidate.
     float slack;
 };
-static_assert(sizeof(GatherArgs) == 608, "GatherArgs differs between host and device");
+static_assert(sizeof(GatherArgs) == 736, "GatherArgs differs between host and device");
 
 // Arguments of the kernels that list neighbours.
 struct ListArgs {
@@ -363,4 +416,4 @@ struct ListArgs {
     // Zero.
     u32 unused;
 };
-static_assert(sizeof(ListArgs) == 608, "ListArgs differs between host and device");
+static_assert(sizeof(ListArgs) == 736, "ListArgs differs between host and device");

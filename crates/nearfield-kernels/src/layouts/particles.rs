@@ -58,7 +58,7 @@ layouts! {
         pub force: Ptr<Float4>,
         /// What went wrong.
         pub status: Ptr<Status>,
-        /// The step that ends, where `finish`.
+        /// The step that the forces belong to.
         pub step: u64,
         /// 1 for the second half kick of `step`.
         pub finish: u32,
@@ -146,6 +146,52 @@ layouts! {
         pub order: Ptr<u32>,
         /// Place of each input index, written.
         pub place: Ptr<u32>,
+    }
+
+    /// Arguments of `morton_count` and `morton_scatter`: the order along the Morton curve.
+    pub struct MortonArgs {
+        /// Positions.
+        pub position: Ptr<Float4>,
+        /// Cell of each particle, written by the count.
+        pub cell: Ptr<u32>,
+        /// Its number within the cell.
+        pub rank: Ptr<u32>,
+        /// Particles of each cell, zeroed, `[8^bits]`.
+        pub count: Ptr<u32>,
+        /// First place of each cell.
+        pub start: Ptr<u32>,
+        /// The particle at each place, written by the scatter.
+        pub order: Ptr<u32>,
+        /// Where cells begin; the outermost extend to infinity.
+        pub lo: [f32; 3],
+        /// Cells per length.
+        pub per_length: [f32; 3],
+        /// Cells along an axis are two to this power, at most 10.
+        pub bits: u32,
+        /// Number of particles.
+        pub n: u32,
+    }
+
+    /// Arguments of `bounds`.
+    pub struct BoundsArgs {
+        /// Positions, at least one.
+        pub position: Ptr<Float4>,
+        /// Low and high corner by `ordered_bits`, `[6]`; low all ones and high zeros before.
+        pub bounds: Ptr<u32>,
+        /// Number of particles.
+        pub n: u64,
+    }
+
+    /// Arguments of `sample`: positions at even strides.
+    pub struct SampleArgs {
+        /// Positions.
+        pub position: Ptr<Float4>,
+        /// Sampled ones.
+        pub sample: Ptr<Float4>,
+        /// Number of particles.
+        pub n: u64,
+        /// Size of the sample, at most `n`.
+        pub n_sampled: u64,
     }
 
     /// Arguments of `finish_exact`: from quanta to numbers.

@@ -53,7 +53,7 @@ impl Observer for MeanSquaredDisplacement {
     }
 
     fn observe(&mut self, sample: &mut Sample) -> Result<()> {
-        let system = sample.simulation.system();
+        let system = sample.simulation.system()?;
         let particles = &system.particles;
         if self.file.is_none() {
             self.start = Start { position: particles.position.clone(), image: particles.image.clone(), file_length: 0 };

@@ -63,7 +63,7 @@ impl Observer for RadialDistribution {
     }
 
     fn observe(&mut self, sample: &mut Sample) -> Result<()> {
-        let system = sample.simulation.system();
+        let system = sample.simulation.system()?;
         let range = system.radii.largest();
         self.add(system, range)?;
         let rows = self.rows(system, range);

@@ -32,7 +32,7 @@ impl Observer for TrajectoryWriter {
     }
 
     fn observe(&mut self, sample: &mut Sample) -> Result<()> {
-        let system = sample.simulation.system();
+        let system = sample.simulation.system()?;
         let mut frame = Configuration::from(system);
         frame.id = Some((0..system.particles.len() as u64).collect());
         frame.step = Some(sample.thermo.step);

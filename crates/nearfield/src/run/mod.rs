@@ -138,7 +138,7 @@ impl Run {
 
     fn save(&mut self) -> Result<()> {
         self.record.thermo(self.simulation.thermo()?);
-        let mut checkpoint = self.simulation.checkpoint();
+        let mut checkpoint = self.simulation.checkpoint()?;
         checkpoint.config = self.config.to_toml()?;
         checkpoint.report = self.record.report_with(self.simulation.report());
         for observer in &mut self.observers {

@@ -42,7 +42,7 @@ fn a_liquid_has_the_energy_and_pressure_that_nist_publishes() {
     // Melted at three times the temperature, then cooled: no crystal is left over.
     let mut hot = build(builder.dynamics(at(2.5)));
     hot.advance(1000).unwrap();
-    let melt = hot.system().clone();
+    let melt = hot.system().unwrap().clone();
     let builder = Simulation::builder(melt).method(Method::Cell).tail_correction(true);
     let mut simulation = build(builder.dynamics(at(0.851)));
     simulation.advance(2000).unwrap();
