@@ -3,8 +3,8 @@
 use crate::{
     Kernel,
     layouts::{
-        BoundsArgs, FinishExactArgs, IntegrateArgs, MortonArgs, MotionArgs, PermuteArgs, RescaleArgs, SampleArgs,
-        ScanArgs, TotalsArgs,
+        BoundsArgs, FinishExactArgs, GatherArgs, IntegrateArgs, ListArgs, MortonArgs, MotionArgs, PermuteArgs,
+        RescaleArgs, SampleArgs, ScanArgs, SortArgs, TotalsArgs,
     },
 };
 
@@ -39,3 +39,57 @@ pub const SCAN_U32: Kernel<ScanArgs> = Kernel::new("scan", "scan_u32", 256);
 pub const SCAN_U64: Kernel<ScanArgs> = Kernel::new("scan", "scan_u64", 256);
 /// Counts that a block of the scans takes.
 pub const SCAN_TILE: usize = 2048;
+
+/// Particles by cell.
+pub const CELL_COUNT: Kernel<SortArgs> = Kernel::new("cells", "cell_count", 256);
+/// Particles in the order of cells.
+pub const CELL_SCATTER: Kernel<SortArgs> = Kernel::new("cells", "cell_scatter", 256);
+
+/// Kernels for the forces on all particles by one way to find candidates; a warp for each [`CLUSTER`].
+#[derive(Clone, Copy)]
+pub struct ForceKernels {
+    /// Lennard-Jones of one type and one cutoff, not shifted in force.
+    pub uniform: Kernel<GatherArgs>,
+    /// Lennard-Jones of one type and a radius for each particle, not shifted in force.
+    pub scaled: Kernel<GatherArgs>,
+    /// Any law.
+    pub any: Kernel<GatherArgs>,
+    /// Any law, with energies, virials and neighbour counts.
+    pub any_energy: Kernel<GatherArgs>,
+    /// Any law in sums that do not depend on order.
+    pub exact: Kernel<GatherArgs>,
+    /// The same with energies, virials and neighbour counts.
+    pub exact_energy: Kernel<GatherArgs>,
+}
+
+/// Particles that a warp takes at a time.
+pub const CLUSTER: usize = 8;
+
+/// Candidates from cells.
+pub const CELL_FORCES: ForceKernels = ForceKernels {
+    uniform: Kernel::new("gather", "cell_uniform", 128),
+    scaled: Kernel::new("gather", "cell_scaled", 128),
+    any: Kernel::new("gather", "cell_any", 128),
+    any_energy: Kernel::new("gather", "cell_any_energy", 128),
+    exact: Kernel::new("gather", "cell_exact", 128),
+    exact_energy: Kernel::new("gather", "cell_exact_energy", 128),
+};
+
+/// All particles as candidates.
+pub const BRUTE_FORCES: ForceKernels = ForceKernels {
+    uniform: Kernel::new("brute", "brute_uniform", 128),
+    scaled: Kernel::new("brute", "brute_scaled", 128),
+    any: Kernel::new("brute", "brute_any", 128),
+    any_energy: Kernel::new("brute", "brute_any_energy", 128),
+    exact: Kernel::new("brute", "brute_exact", 128),
+    exact_energy: Kernel::new("brute", "brute_exact_energy", 128),
+};
+
+/// Neighbours of each particle, counted.
+pub const CELL_LIST_COUNT: Kernel<ListArgs> = Kernel::new("lists", "cell_list_count", 128);
+/// Neighbours of each particle, listed.
+pub const CELL_LIST_FILL: Kernel<ListArgs> = Kernel::new("lists", "cell_list_fill", 128);
+/// Neighbours of each particle, counted by testing all pairs.
+pub const BRUTE_LIST_COUNT: Kernel<ListArgs> = Kernel::new("lists", "brute_list_count", 128);
+/// Neighbours of each particle, listed by testing all pairs.
+pub const BRUTE_LIST_FILL: Kernel<ListArgs> = Kernel::new("lists", "brute_list_fill", 128);

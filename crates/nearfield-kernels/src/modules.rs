@@ -16,7 +16,7 @@ macro_rules! modules {
 }
 
 /// CUDA kernels, from `cuda/`.
-pub const MODULES: &[Module] = modules!["integrate", "totals", "order", "brute"];
+pub const MODULES: &[Module] = modules!["integrate", "totals", "order", "scan", "cells", "gather", "brute", "lists"];
 
 /// Ray-tracing programs, from `optix/`.
 pub const RAY_MODULES: &[Module] = modules![];
