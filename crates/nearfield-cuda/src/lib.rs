@@ -4,6 +4,7 @@ mod buffer;
 mod device;
 mod engine;
 pub mod gpu;
+pub mod grid;
 mod scan;
 
 pub use buffer::Buffer;

@@ -42,48 +42,54 @@ pub const SCAN_TILE: usize = 2048;
 
 /// Particles by cell.
 pub const CELL_COUNT: Kernel<SortArgs> = Kernel::new("cells", "cell_count", 256);
-/// Particles in cell order.
+/// Particles in the order of cells.
 pub const CELL_SCATTER: Kernel<SortArgs> = Kernel::new("cells", "cell_scatter", 256);
 
-/// The kernels of a method that sums forces, by what they are for.
+/// Kernels for the forces on all particles by one way to find candidates; a warp for each [`CLUSTER`].
+#[derive(Clone, Copy)]
 pub struct ForceKernels {
-    /// One type of Lennard-Jones and one cutoff, forces only.
+    /// Lennard-Jones of one type and one cutoff, not shifted in force.
     pub uniform: Kernel<GatherArgs>,
-    /// One type of Lennard-Jones whose sigma is proportional to the range, forces only.
+    /// Lennard-Jones of one type and a radius for each particle, not shifted in force.
     pub scaled: Kernel<GatherArgs>,
-    /// Any law, forces only.
-    pub any: Kernel<GatherArgs>,
     /// Any law.
+    pub any: Kernel<GatherArgs>,
+    /// Any law, with energies, virials and neighbour counts.
     pub any_energy: Kernel<GatherArgs>,
-    /// Any law, sums independent of order, forces only.
+    /// Any law in sums that do not depend on order.
     pub exact: Kernel<GatherArgs>,
-    /// Any law, sums independent of order.
+    /// The same with energies, virials and neighbour counts.
     pub exact_energy: Kernel<GatherArgs>,
 }
 
-macro_rules! force_kernels {
-    ($module:literal, $prefix:literal) => {
-        ForceKernels {
-            uniform: Kernel::new($module, concat!($prefix, "_uniform"), 128),
-            scaled: Kernel::new($module, concat!($prefix, "_scaled"), 128),
-            any: Kernel::new($module, concat!($prefix, "_any"), 128),
-            any_energy: Kernel::new($module, concat!($prefix, "_any_energy"), 128),
-            exact: Kernel::new($module, concat!($prefix, "_exact"), 128),
-            exact_energy: Kernel::new($module, concat!($prefix, "_exact_energy"), 128),
-        }
-    };
-}
+/// Particles that a warp takes at a time.
+pub const CLUSTER: usize = 8;
 
-/// Forces by testing all pairs, a warp for each 8 particles.
-pub const BRUTE_FORCES: ForceKernels = force_kernels!("brute", "brute");
-/// Forces by cells, a warp for each 8 particles.
-pub const CELL_FORCES: ForceKernels = force_kernels!("cell_forces", "cell");
+/// Candidates from cells.
+pub const CELL_FORCES: ForceKernels = ForceKernels {
+    uniform: Kernel::new("cell_forces", "cell_uniform", 128),
+    scaled: Kernel::new("cell_forces", "cell_scaled", 128),
+    any: Kernel::new("cell_forces", "cell_any", 128),
+    any_energy: Kernel::new("cell_forces", "cell_any_energy", 128),
+    exact: Kernel::new("cell_forces", "cell_exact", 128),
+    exact_energy: Kernel::new("cell_forces", "cell_exact_energy", 128),
+};
 
-/// Entries of each row, by testing all pairs.
-pub const BRUTE_LIST_COUNT: Kernel<ListArgs> = Kernel::new("lists", "brute_list_count", 128);
-/// Entries, by testing all pairs.
-pub const BRUTE_LIST_FILL: Kernel<ListArgs> = Kernel::new("lists", "brute_list_fill", 128);
-/// Entries of each row, by cells.
+/// All particles as candidates.
+pub const BRUTE_FORCES: ForceKernels = ForceKernels {
+    uniform: Kernel::new("brute", "brute_uniform", 128),
+    scaled: Kernel::new("brute", "brute_scaled", 128),
+    any: Kernel::new("brute", "brute_any", 128),
+    any_energy: Kernel::new("brute", "brute_any_energy", 128),
+    exact: Kernel::new("brute", "brute_exact", 128),
+    exact_energy: Kernel::new("brute", "brute_exact_energy", 128),
+};
+
+/// Neighbours of each particle, counted.
 pub const CELL_LIST_COUNT: Kernel<ListArgs> = Kernel::new("lists", "cell_list_count", 128);
-/// Entries, by cells.
+/// Neighbours of each particle, listed.
 pub const CELL_LIST_FILL: Kernel<ListArgs> = Kernel::new("lists", "cell_list_fill", 128);
+/// Neighbours of each particle, counted by testing all pairs.
+pub const BRUTE_LIST_COUNT: Kernel<ListArgs> = Kernel::new("lists", "brute_list_count", 128);
+/// Neighbours of each particle, listed by testing all pairs.
+pub const BRUTE_LIST_FILL: Kernel<ListArgs> = Kernel::new("lists", "brute_list_fill", 128);

@@ -333,7 +333,7 @@ struct Grid {
     u32 *cell_start;
     // Particles in cell order: position, and radius in w.
     float4 *slot;
-    // Place of each slot's particle.
+    // Place of each slot's particle; null where slots are places.
     u32 *particle;
 };
 static_assert(sizeof(Grid) == 544, "Grid differs between host and device");
@@ -342,6 +342,8 @@ static_assert(sizeof(Grid) == 544, "Grid differs between host and device");
 struct SortArgs {
     // Cells to sort into.
     Grid grid;
+    // Particles in each cell, counted from zero.
+    u32 *count;
     // Positions, with radii in w where `variable`.
     float4 *position;
     // Cell of each particle, written by the count.
@@ -353,7 +355,7 @@ struct SortArgs {
     // 1 where radii are per particle.
     u32 variable;
 };
-static_assert(sizeof(SortArgs) == 576, "SortArgs differs between host and device");
+static_assert(sizeof(SortArgs) == 584, "SortArgs differs between host and device");
 
 // Arguments of `scan_u32` and `scan_u64`: exclusive prefix sums in one pass with look-back.
 struct ScanArgs {

@@ -37,7 +37,7 @@ layouts! {
         pub cell_start: Ptr<u32>,
         /// Particles in cell order: position, and radius in w.
         pub slot: Ptr<Float4>,
-        /// Place of each slot's particle.
+        /// Place of each slot's particle; null where slots are places.
         pub particle: Ptr<u32>,
     }
 
@@ -45,6 +45,8 @@ layouts! {
     pub struct SortArgs {
         /// Cells to sort into.
         pub grid: Grid,
+        /// Particles in each cell, counted from zero.
+        pub count: Ptr<u32>,
         /// Positions, with radii in w where `variable`.
         pub position: Ptr<Float4>,
         /// Cell of each particle, written by the count.

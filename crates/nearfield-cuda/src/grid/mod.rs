@@ -1,0 +1,119 @@
+//! Cells on the device: particles sorted by cell, so that a warp takes neighbours and finds candidates in rows.
+
+mod bulk;
+mod classes;
+mod plan;
+mod query;
+
+pub use plan::{CellPlan, Survey};
+pub use query::{Candidates, DeviceList, ForceQuery, ListQuery, forces};
+
+use crate::{Buffer, Gpu, gpu::launch, scan::Scan};
+use nearfield_core::Result;
+use nearfield_kernels::{
+    Float4, Ptr, kernels,
+    layouts::{self, CellClass, SortArgs},
+};
+use std::sync::Arc;
+
+/// Particles sorted into cells.
+pub struct Grid {
+    gpu: Arc<dyn Gpu>,
+    plan: CellPlan,
+    n: usize,
+    count: Buffer<u32>,
+    start: Buffer<u32>,
+    cell: Buffer<u32>,
+    rank: Buffer<u32>,
+    slot: Buffer<Float4>,
+    particle: Buffer<u32>,
+    scan: Scan,
+}
+
+impl Grid {
+    /// Without cells yet.
+    pub fn new(gpu: &Arc<dyn Gpu>) -> Self {
+        let buffer = || Buffer::new(gpu, "cells");
+        Self {
+            gpu: gpu.clone(),
+            plan: CellPlan::default(),
+            n: 0,
+            count: buffer(),
+            start: buffer(),
+            cell: buffer(),
+            rank: buffer(),
+            slot: Buffer::new(gpu, "particles in cell order"),
+            particle: buffer(),
+            scan: Scan::new(gpu),
+        }
+    }
+
+    /// Takes other cells from the next build on.
+    pub fn plan(&mut self, survey: &Survey) {
+        self.plan = CellPlan::new(survey);
+    }
+
+    /// Sorts `n` particles by the cells of [`Grid::plan`], which must have been called. `variable`: radii are in w.
+    ///
+    /// # Safety
+    /// `position` is the address of `n` positions.
+    ///
+    /// # Errors
+    /// As [`Gpu::allocate`] and [`Gpu::launch`].
+    pub unsafe fn build(&mut self, position: Ptr<Float4>, n: usize, variable: bool) -> Result<()> {
+        self.n = n;
+        for buffer in [&mut self.cell, &mut self.rank, &mut self.particle] {
+            buffer.resize(n)?;
+        }
+        self.slot.resize(n)?;
+        self.count.resize_with_room(self.plan.n_cells)?;
+        self.count.zero()?;
+        self.start.resize_with_room(self.plan.n_cells + 1)?;
+        let arguments = SortArgs {
+            grid: self.layout(),
+            count: self.count.ptr(),
+            position,
+            cell: self.cell.ptr(),
+            rank: self.rank.ptr(),
+            n: n as u32,
+            variable: u32::from(variable),
+        };
+        // SAFETY: arrays of n particles, of all cells, and one more for their starts; kernels keep within the cells
+        // whatever the positions.
+        unsafe {
+            launch(&*self.gpu, kernels::CELL_COUNT, n as u64, &arguments)?;
+            self.scan.run(&self.count, &mut self.start)?;
+            launch(&*self.gpu, kernels::CELL_SCATTER, n as u64, &arguments)
+        }
+    }
+
+    /// Addresses for kernels.
+    pub fn layout(&self) -> layouts::Grid {
+        let mut classes = [CellClass::default(); 8];
+        classes[..self.plan.classes.len()].copy_from_slice(&self.plan.classes);
+        layouts::Grid {
+            classes,
+            n_classes: self.plan.classes.len() as u32,
+            n_cells: self.plan.n_cells as u32,
+            cell_start: self.start.ptr(),
+            slot: self.slot.ptr(),
+            particle: self.particle.ptr(),
+        }
+    }
+
+    /// Place of the particle in each slot: the order of the cells.
+    pub fn order(&self) -> &Buffer<u32> {
+        &self.particle
+    }
+
+    /// Whether particles are divided by radius. Then results must be zeroed before forces are added to them.
+    pub fn has_classes(&self) -> bool {
+        self.plan.classes.len() > 1
+    }
+
+    /// Bytes held on the device.
+    pub fn bytes(&self) -> u64 {
+        let buffers = [&self.count, &self.start, &self.cell, &self.rank, &self.particle];
+        buffers.iter().map(|buffer| buffer.bytes()).sum::<u64>() + self.slot.bytes() + self.scan.bytes()
+    }
+}

@@ -1,0 +1,143 @@
+//! Size and number of the cells of each class.
+
+use super::classes::Class;
+use super::{bulk::Bulk, classes};
+use nearfield_core::SimBox;
+use nearfield_kernels::{Float4, layouts::CellClass};
+
+/// Particles to a cube of the width of a pencil, at the density they see.
+const OCCUPANCY: f64 = 8.0;
+
+/// Cells along x to the width of a pencil.
+const CELLS_PER_WIDTH: f64 = 4.0;
+
+/// Most cells to a particle, and in any case: where particles cluster, cells are coarser than these would like.
+const CELLS_PER_PARTICLE: f64 = 4.0;
+const LEAST_CELLS: f64 = 64.0;
+
+/// Most cells along an axis: kernels compute them in f32.
+const MOST_ALONG: f64 = (1 << 22) as f64;
+
+/// What sizes of cells depend on. A plan is right for any positions, but good for those it was made for.
+#[derive(Clone, Copy, Debug)]
+pub struct Survey<'a> {
+    /// Number of particles.
+    pub n: usize,
+    /// Positions of some of them, with radii in w where they are per particle.
+    pub sample: &'a [Float4],
+    /// The box.
+    pub sim_box: &'a SimBox,
+    /// The one cutoff; `None` where radii are per particle.
+    pub cutoff: Option<f32>,
+    /// The largest radius of all particles.
+    pub largest: f32,
+}
+
+/// The cells of every class.
+#[derive(Clone, Debug, Default)]
+pub struct CellPlan {
+    /// The classes, by ascending radius; eight at most.
+    pub classes: Vec<CellClass>,
+    /// Cells of all of them.
+    pub n_cells: usize,
+    /// What kernels must add to ranges so that roundings lose no candidate, \[length\].
+    pub slack: f32,
+}
+
+impl CellPlan {
+    /// Chooses classes and their cells.
+    pub fn new(survey: &Survey) -> Self {
+        let bulk = Bulk::of(survey.n, survey.sample);
+        let classes = match survey.cutoff {
+            Some(cutoff) => classes::single(survey.n, cutoff),
+            None => classes::divide(survey.sample.iter().map(|p| p.w).collect(), survey.largest, &bulk),
+        };
+        let mut plan = Self { slack: slack(&bulk, survey.sim_box), ..Self::default() };
+        for class in &classes {
+            let cells = lay_out(class, &bulk, plan.n_cells);
+            plan.n_cells += cells.n.iter().map(|&n| n as usize).product::<usize>();
+            plan.classes.push(cells);
+        }
+        plan
+    }
+}
+
+/// Edges of cells and shifted differences are off by a few roundings of the largest number they come from.
+fn slack(bulk: &Bulk, sim_box: &SimBox) -> f32 {
+    let (lo, hi, length) = (sim_box.lo(), sim_box.hi(), sim_box.lengths());
+    let extent = (0..3).fold(0.0f64, |extent, axis| {
+        let of_box = lo[axis].abs().max(hi[axis].abs()).max(length[axis]);
+        extent.max(f64::from(of_box)).max(bulk.lo[axis].abs() + bulk.length[axis])
+    });
+    (8.0 * f64::from(f32::EPSILON) * extent) as f32
+}
+
+fn lay_out(class: &Class, bulk: &Bulk, first_cell: usize) -> CellClass {
+    let most = CELLS_PER_PARTICLE * class.n + LEAST_CELLS;
+    let mut width = pencil_width(class.n * bulk.clustering / OCCUPANCY, bulk.length);
+    let along = |width: f64| {
+        let n = |length: f64, cell: f64| (length / cell).floor().clamp(1.0, MOST_ALONG);
+        let [x, y, z] = bulk.length;
+        [n(x, width / CELLS_PER_WIDTH), n(y, width), n(z, width)]
+    };
+    while along(width).iter().product::<f64>() > most {
+        width *= 1.25;
+    }
+    let n = along(width);
+    let f32_or_zero = |x: f64| if (x as f32).is_finite() { x as f32 } else { 0.0 };
+    CellClass {
+        lo: bulk.lo.map(|lo| lo as f32),
+        per_length: std::array::from_fn(|a| if n[a] > 1.0 { f32_or_zero(n[a] / bulk.length[a]) } else { 0.0 }),
+        width: std::array::from_fn(|a| f32_or_zero(bulk.length[a] / n[a])),
+        n: n.map(|n| n as u32),
+        unused: 0,
+        first_cell: first_cell as u32,
+        limit: class.limit,
+        largest: class.largest,
+    }
+}
+
+/// The width w for which a box of these lengths holds `cubes` cubes of w; axes shorter than w count as w.
+fn pencil_width(cubes: f64, lengths: [f64; 3]) -> f64 {
+    let mut sorted = lengths;
+    sorted.sort_unstable_by(f64::total_cmp);
+    let [a, b, c] = sorted;
+    let (by_volume, by_area, by_length) = ((a * b * c / cubes).cbrt(), (b * c / cubes).sqrt(), c / cubes);
+    let width = if by_volume <= a {
+        by_volume
+    } else if by_area <= b {
+        by_area
+    } else {
+        by_length
+    };
+    if width > 0.0 && width.is_finite() { width } else { f64::MAX }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_are_bounded_by_the_particles_in_any_region() {
+        for length in
+            [[1e3, 1e3, 1e3], [1e30, 1.0, 1.0], [1.0, 1e38, 1e-30], [0.0, 5.0, 1e9], [0.0; 3], [3.0, 0.0, 0.0]]
+        {
+            for clustering in [1.0, 1e4] {
+                for n in [0usize, 1, 7, 100_000] {
+                    let bulk = Bulk { n, lo: [0.0; 3], length, clustering };
+                    let cells = lay_out(&classes::single(n, 1.0)[0], &bulk, 0);
+                    let product: usize = cells.n.iter().map(|&n| n as usize).product();
+                    assert!(product >= 1 && product <= 4 * n + 64, "{length:?} {clustering} {n}: {cells:?}");
+                    assert!(cells.per_length.iter().chain(&cells.width).all(|x| x.is_finite()), "{cells:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_uniform_cube_has_pencils_of_eight_to_a_cube() {
+        let bulk = Bulk { n: 1_000_000, lo: [0.0; 3], length: [1000.0; 3], clustering: 1.0 };
+        let cells = lay_out(&classes::single(bulk.n, 160.0)[0], &bulk, 0);
+        assert_eq!(cells.n, [200, 50, 50]);
+    }
+}
