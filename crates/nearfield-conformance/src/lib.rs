@@ -4,6 +4,8 @@
 //! one predicate bit for bit, forces within the rounding of f32, and dynamics that obey their conservation laws and
 //! distributions. They run each plan of [`plans`] on each input of [`cases`] that the engine says it supports.
 //!
+//! Where it is known only at run time whether there is a device, [`bodies::all`] gives the suite as data.
+//!
 //! The suite is itself tested: [`OracleEngine`], plain brute force, passes it, and each [`Fault`] that can be planted
 //! there is caught (`tests/suite.rs`).
 
@@ -22,3 +24,6 @@ use nearfield_core::Engine;
 
 /// Makes fresh engines of the kind under test.
 pub type Factory<'a> = &'a dyn Fn() -> Box<dyn Engine>;
+
+/// A test of engines; panics when they break a promise.
+pub type Body = fn(Factory);

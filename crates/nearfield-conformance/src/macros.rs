@@ -15,14 +15,12 @@ macro_rules! engine_tests {
             #[allow(unused_imports, reason = "the expression for the engine may be fully qualified")]
             use super::*;
 
-            $crate::bodies_on!($engine;
-                large: every_structure_finds_the_same_pairs_among_a_hundred_thousand_particles,
-            );
+            $crate::large_bodies!(bodies_on; $engine);
             mod small {
                 #[allow(unused_imports, reason = "the expression for the engine may be fully qualified")]
                 use super::*;
 
-                $crate::small_bodies_on!($engine);
+                $crate::small_bodies!(bodies_on; $engine);
             }
         }
     };
@@ -36,17 +34,28 @@ macro_rules! small_engine_tests {
             #[allow(unused_imports, reason = "the expression for the engine may be fully qualified")]
             use super::*;
 
-            $crate::small_bodies_on!($engine);
+            $crate::small_bodies!(bodies_on; $engine);
         }
     };
 }
 
-/// The bodies for systems of up to a few thousand particles.
+/// Hands the bodies for a hundred thousand particles to a macro of this crate, after the other arguments.
 #[doc(hidden)]
 #[macro_export]
-macro_rules! small_bodies_on {
-    ($engine:expr) => {
-        $crate::bodies_on!($engine;
+macro_rules! large_bodies {
+    ($callback:ident; $($argument:tt)*) => {
+        $crate::$callback! { $($argument)*;
+            large: every_structure_finds_the_same_pairs_among_a_hundred_thousand_particles,
+        }
+    };
+}
+
+/// Hands the bodies for systems of up to a few thousand particles to a macro of this crate, after the other arguments.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! small_bodies {
+    ($callback:ident; $($argument:tt)*) => {
+        $crate::$callback! { $($argument)*;
             neighbors: half_and_full_lists_equal_the_oracle_bit_for_bit,
             neighbors: lists_of_random_systems_equal_the_oracle,
             neighbors: lists_of_thousands_of_particles_equal_the_oracle,
@@ -84,7 +93,7 @@ macro_rules! small_bodies_on {
             reports: every_never_refits_and_fixed_builds_at_each_period,
             reports: a_skin_saves_list_builds,
             reports: history_holds_each_evaluation_while_it_is_recorded,
-        );
+        }
     };
 }
 
@@ -99,5 +108,14 @@ macro_rules! bodies_on {
                 $crate::bodies::$module::$body(&|| Box::new($engine));
             }
         )+
+    };
+}
+
+/// A list of bodies with their names.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! bodies_as_data {
+    (; $($module:ident: $body:ident,)+) => {
+        [$((concat!(stringify!($module), "::", stringify!($body)), $crate::bodies::$module::$body as $crate::Body)),+]
     };
 }

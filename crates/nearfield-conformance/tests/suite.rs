@@ -1,7 +1,7 @@
 //! The suite tested: an engine that keeps its promises passes, and each planted fault is caught.
 
 use nearfield_conformance::{Factory, Fault, OracleEngine, bodies, small_engine_tests};
-use std::panic;
+use std::{collections::BTreeSet, panic};
 
 small_engine_tests!(oracle, OracleEngine::new());
 
@@ -105,4 +105,12 @@ fn a_method_that_rounds_differently_is_noticed() {
     let body = bodies::forces::deterministic_forces_are_bitwise_equal_between_all_plans_and_repeats;
     caught(Fault::MethodRounds, body);
     caught(Fault::MethodRounds, bodies::motion::maintenance_and_skin_do_not_change_a_deterministic_trajectory);
+}
+
+#[test]
+fn the_suite_as_data_names_each_body_once() {
+    let names: BTreeSet<&str> = bodies::all().into_iter().map(|(name, _)| name).collect();
+    assert_eq!(names.len(), bodies::all().len());
+    assert!(names.contains("neighbors::counts_of_neighbors_equal_the_oracle"));
+    assert!(names.iter().any(|name| name.starts_with("large::")));
 }

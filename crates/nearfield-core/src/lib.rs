@@ -21,7 +21,7 @@ mod system;
 mod vec3s;
 
 pub use dynamics::{Dynamics, Ensemble};
-pub use engine::{Engine, PerParticle, Quantities, Report, Totals};
+pub use engine::{Engine, PerParticle, Quantities, Report, StepCost, Totals};
 pub use error::{Error, Result};
 pub use interaction::{Interaction, Mixing, ParticleType, Truncation};
 pub use maintenance::Maintenance;

@@ -157,6 +157,9 @@ pub type Aabb = [f32; 6];
 
 /// Ray tracing of infinitesimal rays against boxes.
 pub trait RayTracing {
+    /// What traces, for reports.
+    fn describe(&self) -> String;
+
     /// An empty acceleration structure.
     ///
     /// # Errors

@@ -1,7 +1,12 @@
 //! The GPU engine of Nearfield: CUDA cores and OptiX ray tracing, with nothing but the NVIDIA driver.
 
 mod buffer;
+mod device;
+mod engine;
 pub mod gpu;
+mod scan;
 
 pub use buffer::Buffer;
+pub use device::{CudaDevice, DeviceInfo, Unavailable, devices};
+pub use engine::CudaEngine;
 pub use gpu::Gpu;

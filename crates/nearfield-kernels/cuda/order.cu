@@ -64,6 +64,11 @@ KERNEL(bounds, BoundsArgs, 256) {
     }
 }
 
+KERNEL(sample, SampleArgs, 256) {
+    const u64 k = thread_index();
+    if (k < a.n_sampled) a.sample[k] = a.position[k * a.n / a.n_sampled];
+}
+
 // Puts particle `order[k]` at place k.
 KERNEL(permute, PermuteArgs, 256) {
     const u32 k = thread_index();

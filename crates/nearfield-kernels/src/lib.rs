@@ -5,6 +5,7 @@
 //! CUDA toolkit.
 
 pub mod kernel;
+pub mod kernels;
 pub mod layout;
 pub mod layouts;
 mod modules;
@@ -12,11 +13,3 @@ mod modules;
 pub use kernel::{Kernel, RayProgram};
 pub use layout::{Float4, Layout, Ptr};
 pub use modules::{MODULES, Module, RAY_MODULES};
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn dump() {
-        std::fs::write("cuda/include/layouts.cuh", crate::layouts::header()).unwrap();
-    }
-}

@@ -267,6 +267,19 @@ struct BoundsArgs {
 };
 static_assert(sizeof(BoundsArgs) == 24, "BoundsArgs differs between host and device");
 
+// Arguments of `sample`: positions at even strides.
+struct SampleArgs {
+    // Positions.
+    float4 *position;
+    // Sampled ones.
+    float4 *sample;
+    // Number of particles.
+    u64 n;
+    // Size of the sample, at most `n`.
+    u64 n_sampled;
+};
+static_assert(sizeof(SampleArgs) == 32, "SampleArgs differs between host and device");
+
 // Arguments of `finish_exact`: from quanta to numbers.
 struct FinishExactArgs {
     // From `exact` to the others.

@@ -182,6 +182,18 @@ layouts! {
         pub n: u64,
     }
 
+    /// Arguments of `sample`: positions at even strides.
+    pub struct SampleArgs {
+        /// Positions.
+        pub position: Ptr<Float4>,
+        /// Sampled ones.
+        pub sample: Ptr<Float4>,
+        /// Number of particles.
+        pub n: u64,
+        /// Size of the sample, at most `n`.
+        pub n_sampled: u64,
+    }
+
     /// Arguments of `finish_exact`: from quanta to numbers.
     pub struct FinishExactArgs {
         /// From `exact` to the others.

@@ -1,0 +1,9 @@
+//! Real devices, through the NVIDIA driver.
+
+mod cuda;
+mod error;
+mod find;
+
+pub use cuda::CudaDevice;
+pub use error::Unavailable;
+pub use find::{DeviceInfo, devices};

@@ -1,0 +1,83 @@
+//! A loaded system.
+
+use super::{
+    motion::Reference, order::MortonOrder, physics::Physics, results::Results, state::State, structure::Structure,
+    survey::Surveyor, timeline::Timeline, totals::Totalizer,
+};
+use crate::{Buffer, Gpu};
+use nearfield_core::{Plan, Report, Result, System, engine::MemoryOrder, maintenance::Policy};
+use std::sync::Arc;
+
+/// A system on the device, with everything its computation keeps.
+pub(crate) struct Loaded {
+    pub gpu: Arc<dyn Gpu>,
+    pub plan: Plan,
+    pub physics: Physics,
+    pub state: State,
+    pub results: Results,
+    pub totalizer: Totalizer,
+    pub structure: Structure,
+    pub policy: Box<dyn Policy>,
+    /// Positions at the last structure build, for policies that ask.
+    pub reference: Reference,
+    pub surveyor: Surveyor,
+    pub morton: MortonOrder,
+    pub timeline: Timeline,
+    pub report: Report,
+    pub record_history: bool,
+    /// Whether the structure has been built since the system was loaded.
+    pub built: bool,
+    /// Whether the forces belong to the present positions.
+    pub forces_valid: bool,
+    /// Step at which particles were last reordered.
+    pub sorted_at: Option<u64>,
+    /// Step at which the choice of cells was last made anew.
+    pub surveyed_at: Option<u64>,
+}
+
+impl Loaded {
+    pub fn new(gpu: &Arc<dyn Gpu>, system: &System, plan: &Plan) -> Result<Self> {
+        let physics = Physics::new(gpu, system)?;
+        Ok(Self {
+            gpu: gpu.clone(),
+            plan: *plan,
+            state: State::new(gpu, system)?,
+            results: Results::new(gpu),
+            totalizer: Totalizer::new(gpu, &system.interaction)?,
+            structure: Structure::new(gpu, plan, &physics)?,
+            policy: plan.maintenance.policy(),
+            reference: Reference::new(gpu),
+            surveyor: Surveyor::new(gpu),
+            morton: MortonOrder::new(gpu),
+            timeline: Timeline::default(),
+            report: Report::default(),
+            record_history: false,
+            built: false,
+            forces_valid: false,
+            sorted_at: None,
+            surveyed_at: None,
+            physics,
+        })
+    }
+
+    /// Arranges the particles as another engine had them.
+    pub fn arrange(&mut self, order: &MemoryOrder) -> Result<()> {
+        // Places now are input indices, since the system was just loaded.
+        let mut permutation = Buffer::new(&self.gpu, "a memory order");
+        permutation.upload(&order.ids)?;
+        self.state.permute(permutation.ptr(), &mut self.results.force)?;
+        self.sorted_at = order.sorted_at;
+        Ok(())
+    }
+
+    pub fn report(&self) -> Report {
+        let bytes = self.state.bytes()
+            + self.results.bytes()
+            + self.physics.bytes()
+            + self.totalizer.bytes()
+            + self.structure.bytes()
+            + self.reference.bytes()
+            + self.morton.bytes();
+        Report { bytes, ..self.report.clone() }
+    }
+}

@@ -1,0 +1,78 @@
+//! The loop of a run. Nothing waits for the device before the end, but where a decision needs what it found.
+
+use super::{
+    integrate::{Half, Integrator},
+    loaded::Loaded,
+};
+use nearfield_core::{Dynamics, Error, Quantities, Result, Totals};
+
+impl Loaded {
+    /// See [`nearfield_core::Engine::advance`].
+    pub fn advance(&mut self, dynamics: &Dynamics, from: u64, steps: u64, quantities: Quantities) -> Result<Totals> {
+        dynamics.validate()?;
+        self.physics.allow_overlaps(dynamics.max_displacement > 0.0);
+        if !self.forces_valid || steps == 0 {
+            let wanted = if steps == 0 { quantities } else { Quantities::FORCES };
+            self.evaluate(wanted, from)?;
+        }
+        if steps > 0 {
+            let last = from + steps;
+            let integrator = Integrator::new(&self.gpu, &self.physics, dynamics, self.state.len(), from + 1..last + 1)?;
+            self.forces_valid = false;
+            self.move_all(&integrator, Half::Start, from)?;
+            for step in from + 1..=last {
+                let wanted = if step == last { quantities } else { Quantities::FORCES };
+                self.evaluate(wanted, step)?;
+                self.finish_step(&integrator, step - from - 1, step, step == last)?;
+            }
+            self.forces_valid = true;
+        }
+        self.totals(quantities, from + steps)
+    }
+
+    /// Second half kick of `step`, thermostat, and the beginning of the step after unless this was the last.
+    fn finish_step(&mut self, integrator: &Integrator, index: u64, step: u64, last: bool) -> Result<()> {
+        if !integrator.rescales() {
+            return self.move_all(integrator, if last { Half::Finish } else { Half::FinishAndStart }, step);
+        }
+        self.move_all(integrator, Half::Finish, step)?;
+        integrator.rescale(&self.state, &mut self.totalizer, index)?;
+        if last { Ok(()) } else { self.move_all(integrator, Half::Start, step) }
+    }
+
+    fn move_all(&self, integrator: &Integrator, half: Half, step: u64) -> Result<()> {
+        integrator.run(half, &self.state, &self.results.force, &self.totalizer, step)
+    }
+
+    /// Sums over particles at `step`, after all work.
+    ///
+    /// # Errors
+    /// What went wrong first: [`Error::Coincident`], [`Error::NonFinite`].
+    pub fn totals(&mut self, quantities: Quantities, step: u64) -> Result<Totals> {
+        let results = if quantities.energy { self.results.layout() } else { self.results.forces_only() };
+        self.totalizer.enqueue(self.state.particles(), &self.state.place, results, step)?;
+        let (totals, failures) = self.totalizer.read(quantities)?;
+        let costs = self.timeline.read(&mut self.report)?;
+        self.book(costs);
+        self.timeline.pause();
+        let (force, position) = (failures.force, failures.position);
+        // A force that is not finite comes before the coordinate it would have spoilt.
+        if let Some(failure) = force.filter(|force| position.is_none_or(|position| force.step <= position.step)) {
+            self.forces_valid = false;
+            return Err(self.diagnose_force(failure)?);
+        }
+        if let Some(failure) = position {
+            self.forces_valid = false;
+            let (step, particle) = (failure.step, failure.particle as usize);
+            return Err(Error::NonFinite { step, what: "coordinate", particle, value: f64::NAN });
+        }
+        for (what, value) in [("kinetic energy", totals.kinetic_energy), ("energy", totals.potential_energy)] {
+            if !value.is_finite() {
+                self.forces_valid = false;
+                let particle = self.first_not_finite(what)?;
+                return Err(Error::NonFinite { step, what, particle, value });
+            }
+        }
+        Ok(totals)
+    }
+}
