@@ -5,6 +5,7 @@ mod device;
 mod engine;
 pub mod gpu;
 mod scan;
+pub mod tracing;
 
 pub use buffer::Buffer;
 pub use device::{CudaDevice, DeviceInfo, Unavailable, devices};

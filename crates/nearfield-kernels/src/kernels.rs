@@ -1,10 +1,10 @@
 //! Every kernel, by the structure it takes.
 
 use crate::{
-    Kernel,
+    ByForce, Kernel, RayProgram,
     layouts::{
-        BoundsArgs, FinishExactArgs, IntegrateArgs, MortonArgs, MotionArgs, PermuteArgs, RescaleArgs, SampleArgs,
-        ScanArgs, TotalsArgs,
+        AdvanceRays, BoundsArgs, BoxesArgs, FinishExactArgs, ForceRays, IntegrateArgs, ListRays, MortonArgs,
+        MotionArgs, PermuteArgs, RescaleArgs, RowsArgs, SampleArgs, ScanArgs, TotalsArgs,
     },
 };
 
@@ -39,3 +39,55 @@ pub const SCAN_U32: Kernel<ScanArgs> = Kernel::new("scan", "scan_u32", 256);
 pub const SCAN_U64: Kernel<ScanArgs> = Kernel::new("scan", "scan_u64", 256);
 /// Counts that a block of the scans takes.
 pub const SCAN_TILE: usize = 2048;
+
+/// Boxes around particles and ghosts.
+pub const FIT_BOXES: Kernel<BoxesArgs> = Kernel::new("boxes", "fit_boxes", 256);
+/// Faces of particles, and the number of ghosts.
+pub const COUNT_GHOSTS: Kernel<BoxesArgs> = Kernel::new("ghosts", "count_ghosts", 256);
+/// Mirror particles.
+pub const MAKE_GHOSTS: Kernel<BoxesArgs> = Kernel::new("ghosts", "make_ghosts", 256);
+
+/// Forces from rows of neighbours.
+pub const ROWS: ByForce<Kernel<RowsArgs>> = ByForce {
+    fast: Kernel::new("rows", "rows", 128),
+    energy: Kernel::new("rows", "rows_energy", 128),
+    exact: Kernel::new("rows", "rows_exact", 128),
+    exact_energy: Kernel::new("rows", "rows_exact_energy", 128),
+    uniform_lj: Kernel::new("rows", "rows_uniform_lj", 128),
+    scaled_lj: Kernel::new("rows", "rows_scaled_lj", 128),
+};
+/// Threads that share a row of [`ROWS`].
+pub const ROWS_LANES: u64 = 8;
+
+const fn program<A: crate::Layout>(module: &'static str, name: &'static str) -> RayProgram<A> {
+    RayProgram::new(module, name, name)
+}
+
+/// Forces of all particles where one cutoff serves all pairs; there is no scaled Lennard-Jones.
+pub const RAY_GATHER: ByForce<RayProgram<ForceRays>> = ByForce {
+    fast: program("ray_gather", "gather"),
+    energy: program("ray_gather", "gather_energy"),
+    exact: program("ray_gather", "gather_exact"),
+    exact_energy: program("ray_gather", "gather_exact_energy"),
+    uniform_lj: program("ray_gather", "gather_uniform_lj"),
+    scaled_lj: program("ray_gather", "gather"),
+};
+/// Forces of all particles, added to zeros.
+pub const RAY_SCATTER: ByForce<RayProgram<ForceRays>> = ByForce {
+    fast: program("ray_scatter", "scatter"),
+    energy: program("ray_scatter", "scatter_energy"),
+    exact: program("ray_scatter", "scatter_exact"),
+    exact_energy: program("ray_scatter", "scatter_exact_energy"),
+    uniform_lj: program("ray_scatter", "scatter_uniform_lj"),
+    scaled_lj: program("ray_scatter", "scatter_scaled_lj"),
+};
+/// Forces of all particles and a step of theirs, in f32.
+pub const RAY_ADVANCE: RayProgram<AdvanceRays> = program("ray_advance", "advance");
+/// The same in sums that do not depend on order.
+pub const RAY_ADVANCE_EXACT: RayProgram<AdvanceRays> = program("ray_advance", "advance_exact");
+/// The same in f32 for plain Lennard-Jones.
+pub const RAY_ADVANCE_UNIFORM_LJ: RayProgram<AdvanceRays> = program("ray_advance", "advance_uniform_lj");
+/// Entries of each row of neighbours.
+pub const RAY_COUNT: RayProgram<ListRays> = program("ray_list", "count");
+/// Rows of neighbours.
+pub const RAY_FILL: RayProgram<ListRays> = program("ray_list", "fill");
