@@ -12,11 +12,13 @@ typedef unsigned long long u64;
 #define WARP 32
 #define ALL_LANES 0xffffffffu
 
-// A kernel with one argument, a structure of layouts.cuh. The emulator defines its own.
+// A kernel with one argument, a structure of layouts.cuh. The emulator defines its own. `__grid_constant__` lets the
+// argument be referred to, even with indices, without copies of it.
 #ifndef KERNEL
-#define KERNEL(name, Args, threads) extern "C" __global__ void __launch_bounds__(threads) name(const Args a)
+#define KERNEL(name, Args, threads)                                                                                    \
+    extern "C" __global__ void __launch_bounds__(threads) name(const __grid_constant__ Args a)
 #define KERNEL_MIN_BLOCKS(name, Args, threads, blocks)                                                                 \
-    extern "C" __global__ void __launch_bounds__(threads, blocks) name(const Args a)
+    extern "C" __global__ void __launch_bounds__(threads, blocks) name(const __grid_constant__ Args a)
 #endif
 
 __device__ inline u32 thread_index() {

@@ -306,8 +306,12 @@ struct CellClass {
     float lo[3];
     // Cells per length.
     float per_length[3];
+    // Lengths of a cell.
+    float width[3];
     // Cells along each axis.
     u32 n[3];
+    // Zero.
+    u32 unused;
     // Index of the first cell among those of all classes.
     u32 first_cell;
     // Upper limit of the radii of the class; infinite for the last.
@@ -315,7 +319,7 @@ struct CellClass {
     // Largest radius of the class now, the cutoff where there is one for all.
     float largest;
 };
-static_assert(sizeof(CellClass) == 48, "CellClass differs between host and device");
+static_assert(sizeof(CellClass) == 64, "CellClass differs between host and device");
 
 // All classes, by ascending radius.
 struct Grid {
@@ -332,7 +336,7 @@ struct Grid {
     // Place of each slot's particle.
     u32 *particle;
 };
-static_assert(sizeof(Grid) == 416, "Grid differs between host and device");
+static_assert(sizeof(Grid) == 544, "Grid differs between host and device");
 
 // Arguments of `cell_count` and `cell_scatter`.
 struct SortArgs {
@@ -349,7 +353,7 @@ struct SortArgs {
     // 1 where radii are per particle.
     u32 variable;
 };
-static_assert(sizeof(SortArgs) == 448, "SortArgs differs between host and device");
+static_assert(sizeof(SortArgs) == 576, "SortArgs differs between host and device");
 
 // Arguments of `scan_u32` and `scan_u64`: exclusive prefix sums in one pass with look-back.
 struct ScanArgs {
@@ -383,7 +387,7 @@ struct GatherArgs {
     // Added to ranges so that roundings lose no candidate.
     float slack;
 };
-static_assert(sizeof(GatherArgs) == 608, "GatherArgs differs between host and device");
+static_assert(sizeof(GatherArgs) == 736, "GatherArgs differs between host and device");
 
 // Arguments of the kernels that list neighbours.
 struct ListArgs {
@@ -412,7 +416,7 @@ struct ListArgs {
     // Zero.
     u32 unused;
 };
-static_assert(sizeof(ListArgs) == 608, "ListArgs differs between host and device");
+static_assert(sizeof(ListArgs) == 736, "ListArgs differs between host and device");
 
 // A mirror particle: a box around a periodic image.
 struct Ghost {

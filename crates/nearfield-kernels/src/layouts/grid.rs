@@ -11,8 +11,12 @@ layouts! {
         pub lo: [f32; 3],
         /// Cells per length.
         pub per_length: [f32; 3],
+        /// Lengths of a cell.
+        pub width: [f32; 3],
         /// Cells along each axis.
         pub n: [u32; 3],
+        /// Zero.
+        pub unused: u32,
         /// Index of the first cell among those of all classes.
         pub first_cell: u32,
         /// Upper limit of the radii of the class; infinite for the last.
