@@ -44,7 +44,7 @@ impl Loaded {
         if updated.built {
             self.report.builds += 1;
             if self.policy.needs_motion() {
-                self.reference.set(&self.state)?;
+                self.reference.set(&self.state.particles())?;
             }
         } else {
             self.report.refits += 1;
@@ -62,7 +62,10 @@ impl Loaded {
         }
         let mut motion = Motion::default();
         if self.policy.needs_motion() {
-            motion.mean = self.reference.moved(&self.state, &self.physics)?.mean_over_radius as f32;
+            motion.mean = self
+                .reference
+                .moved(&self.state.particles(), &self.physics.space, self.physics.law.cutoff)?
+                .mean_over_radius as f32;
         }
         Ok(self.policy.decide(motion))
     }

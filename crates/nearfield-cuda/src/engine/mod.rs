@@ -4,7 +4,7 @@ mod diagnose;
 mod evaluate;
 mod integrate;
 mod loaded;
-mod motion;
+pub(crate) mod motion;
 mod order;
 mod physics;
 mod results;
