@@ -39,7 +39,7 @@ fn main() {
     let table = out.join("modules.cpp");
     write(&table, &module_table(modules.len()));
     build.file(table);
-    for part in ["fiber", "machine", "launch"] {
+    for part in ["fault", "fiber", "machine", "launch"] {
         build.file(root.join(format!("shim/{part}.cpp")));
     }
     build.compile("nearfield_emulated_kernels");

@@ -76,7 +76,7 @@ pub struct Run {
     /// Change a key of the configuration, as in dynamics.dt=0.002; may be repeated.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub set: Vec<String>,
-    /// Device: auto, cpu, cuda or cuda:N.
+    /// Device: auto (the first usable GPU, else the CPU), cpu, cuda or cuda:N.
     #[arg(long)]
     pub device: Option<Device>,
     /// Method: auto, or one that `nearfield methods` lists.
@@ -108,7 +108,7 @@ pub struct How {
     /// Order of particles in memory: none, morton or cell.
     #[arg(long, default_value = "none")]
     pub order: Order,
-    /// Device: auto, cpu, cuda or cuda:N.
+    /// Device: auto (the first usable GPU, else the CPU), cpu, cuda or cuda:N.
     #[arg(long, default_value = "auto")]
     pub device: Device,
     /// Method: auto, or one that `nearfield methods` lists.

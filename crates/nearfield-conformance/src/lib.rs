@@ -4,7 +4,7 @@
 //! one predicate bit for bit, forces within the rounding of f32, and dynamics that obey their conservation laws and
 //! distributions. They run each plan of [`plans`] on each input of [`cases`] that the engine says it supports.
 //!
-//! Where it is known only at run time whether there is a device, [`bodies::all`] gives the suite as data.
+//! Where it is known only at run time whether there is a device, [`bodies()`] gives the suite as data.
 //!
 //! The suite is itself tested: [`OracleEngine`], plain brute force, passes it, and each [`Fault`] that can be planted
 //! there is caught (`tests/suite.rs`).
@@ -27,3 +27,10 @@ pub type Factory<'a> = &'a dyn Fn() -> Box<dyn Engine>;
 
 /// A test of engines; panics when they break a promise.
 pub type Body = fn(Factory);
+
+/// Every body with its name, for harnesses that decide at run time what to run; [`engine_tests!`] stamps the same list.
+pub fn bodies() -> Vec<(&'static str, Body)> {
+    let mut all = small_bodies!(bodies_as_data;).to_vec();
+    all.extend(large_bodies!(bodies_as_data;));
+    all
+}

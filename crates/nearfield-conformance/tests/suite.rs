@@ -109,8 +109,8 @@ fn a_method_that_rounds_differently_is_noticed() {
 
 #[test]
 fn the_suite_as_data_names_each_body_once() {
-    let names: BTreeSet<&str> = bodies::all().into_iter().map(|(name, _)| name).collect();
-    assert_eq!(names.len(), bodies::all().len());
+    let names: BTreeSet<&str> = nearfield_conformance::bodies().into_iter().map(|(name, _)| name).collect();
+    assert_eq!(names.len(), nearfield_conformance::bodies().len());
     assert!(names.contains("neighbors::counts_of_neighbors_equal_the_oracle"));
     assert!(names.iter().any(|name| name.starts_with("large::")));
 }

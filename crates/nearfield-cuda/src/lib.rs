@@ -6,6 +6,7 @@ mod engine;
 pub mod gpu;
 pub mod grid;
 mod scan;
+pub mod tracing;
 
 pub use buffer::Buffer;
 pub use device::{CudaDevice, DeviceInfo, Unavailable, devices};

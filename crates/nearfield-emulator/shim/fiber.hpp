@@ -7,6 +7,8 @@
 
 #if !defined(__x86_64__) || defined(_WIN32)
 #define EMULATOR_UCONTEXT
+#endif
+#ifdef EMULATOR_UCONTEXT
 #if defined(__APPLE__)
 #define _XOPEN_SOURCE
 #endif

@@ -51,7 +51,7 @@ extern "C" bool nearfield_emulator_launch(const char* module, const char* name, 
     }
     alignas(64) unsigned char copy[MAX_ARGUMENTS];
     memcpy(copy, arguments, size);
-    return machine().run({name, blocks, threads, true, kernel->run, copy}, error, capacity);
+    return Machine::launch_here({name, blocks, threads, true, kernel->run, copy}, error, capacity);
 }
 
 extern "C" bool nearfield_emulator_trace(const char* module, const char* raygen, const char* intersection,
@@ -75,5 +75,5 @@ extern "C" bool nearfield_emulator_trace(const char* module, const char* raygen,
         if (rt::ray_index() < ray.count) (*static_cast<void (*const*)(const void*)>(run))(nullptr);
     };
     const unsigned blocks = rays / RAYS_AT_ONCE + (rays % RAYS_AT_ONCE != 0);
-    return machine().run({raygen, blocks, RAYS_AT_ONCE, false, thread, &generation->run}, error, capacity);
+    return Machine::launch_here({raygen, blocks, RAYS_AT_ONCE, false, thread, &generation->run}, error, capacity);
 }

@@ -1,4 +1,5 @@
 #include "machine.hpp"
+#include "fault.hpp"
 
 #include <cstdarg>
 #include <cstdio>
@@ -21,9 +22,15 @@ unsigned first_lane(unsigned lanes) {
 
 } // namespace
 
-Machine& machine() {
+__thread Machine* running;
+
+bool Machine::launch_here(const Launch& what, char* error, size_t capacity) {
     static thread_local Machine machine;
-    return machine;
+    report_faults();
+    running = &machine;
+    const bool good = machine.run(what, error, capacity);
+    running = nullptr;
+    return good;
 }
 
 bool Machine::run(const Launch& what, char* text, size_t length) {
@@ -88,10 +95,16 @@ void Machine::fiber_main() {
     Machine& m = machine();
     for (;;) {
         // Threads that wait come first, so that a warp ends before the next one begins and few stacks are in use.
-        while (m.n_ready == 0 && m.next < m.launch.threads) m.run_thread(m.next++);
+        while (m.n_ready == 0 && m.next < m.launch.threads) m.run_thread(m.next_thread());
         m.idle.push_back(m.current);
         m.leave();
     }
+}
+
+// Odd blocks run backwards: a kernel that lacks a barrier should not pass because of the order here.
+unsigned Machine::next_thread() {
+    const unsigned t = next++;
+    return blockIdx.x % 2 == 0 ? t : launch.threads - 1 - t;
 }
 
 void Machine::run_thread(unsigned t) {

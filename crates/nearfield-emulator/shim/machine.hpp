@@ -27,8 +27,8 @@ struct Launch {
 
 class Machine {
 public:
-    // Runs all blocks; on failure writes why.
-    bool run(const Launch&, char* error, size_t capacity);
+    // Runs all blocks on this thread of the operating system; on failure writes why.
+    static bool launch_here(const Launch&, char* error, size_t capacity);
 
     // A rendezvous of the lanes in `mask`. Of a shuffle it gives the value of lane `source`, of a ballot the lanes
     // whose values are not zero, of a match those whose values are equal to this lane's.
@@ -51,8 +51,10 @@ private:
         unsigned waiting, ended;
     };
 
+    bool run(const Launch&, char* error, size_t capacity);
     static void fiber_main();
     void begin_block();
+    unsigned next_thread();
     bool block_ended() const { return unended == 0; }
     void run_thread(unsigned);
     void end_thread(unsigned);
@@ -87,7 +89,11 @@ private:
     Fiber* current;
 };
 
-// That of this thread of the operating system.
-Machine& machine();
+// That of the launch on this thread of the operating system; null while there is none.
+extern __thread Machine* running;
+
+inline Machine& machine() {
+    return *running;
+}
 
 } // namespace emulator

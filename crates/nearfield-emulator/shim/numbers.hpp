@@ -51,6 +51,14 @@ inline long long __float2ll_rd(float x) { return emulator::rounded(floorf(x)); }
 inline int __double2int_rn(double x) { return emulator::rounded_int(x); }
 inline long long __double2ll_rn(double x) { return emulator::rounded(x); }
 inline float __double2float_rn(double x) { return (float)x; }
+inline float __double2float_ru(double x) {
+    const float nearest = (float)x;
+    return (double)nearest < x ? nextafterf(nearest, INFINITY) : nearest;
+}
+inline float __double2float_rd(double x) {
+    const float nearest = (float)x;
+    return (double)nearest > x ? nextafterf(nearest, -INFINITY) : nearest;
+}
 
 inline float __fadd_rn(float a, float b) { return a + b; }
 inline float __fsub_rn(float a, float b) { return a - b; }
@@ -62,8 +70,9 @@ inline float __fmaf_rn(float a, float b, float c) { return fmaf(a, b, c); }
 inline double __dadd_rn(double a, double b) { return a + b; }
 inline double __dmul_rn(double a, double b) { return a * b; }
 inline double __fma_rn(double a, double b, double c) { return fma(a, b, c); }
-inline float rsqrtf(float x) { return 1.0f / sqrtf(x); }
-inline double rsqrt(double x) { return 1.0 / sqrt(x); }
+// Templates, because newer C libraries have functions of these names.
+template <class T> T rsqrtf(T x) { return 1.0f / sqrtf(x); }
+template <class T> T rsqrt(T x) { return 1.0 / sqrt(x); }
 inline float __saturatef(float x) { return x > 0.0f ? (x < 1.0f ? x : 1.0f) : 0.0f; }
 #ifdef __APPLE__
 inline void sincos(double x, double* s, double* c) { *s = sin(x), *c = cos(x); }

@@ -124,6 +124,10 @@ impl Gpu for Emulator {
 }
 
 impl RayTracing for Emulator {
+    fn describe(&self) -> String {
+        "a tree of boxes on the host".into()
+    }
+
     fn structure(&self) -> Result<Box<dyn AccelerationStructure>> {
         Ok(Box::new(Acceleration::new(self.shared.clone())))
     }

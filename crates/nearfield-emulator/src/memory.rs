@@ -4,7 +4,7 @@ use nearfield_core::{Error, Result};
 use nearfield_cuda::gpu::Memory;
 use std::{
     alloc::{self, Layout},
-    collections::BTreeMap,
+    collections::{BTreeMap, VecDeque},
     ptr::NonNull,
     slice,
 };
@@ -13,12 +13,15 @@ use std::{
 const ALIGNMENT: usize = 256;
 /// What guards hold. As an index or a float it is far off.
 const GUARD: u8 = 0xC7;
-/// What new memory holds.
+/// What new memory holds, and released memory.
 const UNWRITTEN: u8 = 0xA5;
+/// Bytes of released buffers that are kept, so that those who still read one see the pattern instead of their data.
+const KEPT: usize = 16 << 20;
 
 /// All buffers of a device.
 pub struct Heap {
     buffers: BTreeMap<u64, Buffer>,
+    released: VecDeque<Buffer>,
     limit: u64,
     used: u64,
     /// What was found wrong where nothing could be returned.
@@ -38,7 +41,7 @@ unsafe impl Send for Buffer {}
 impl Heap {
     /// An empty heap of `limit` bytes.
     pub fn new(limit: u64) -> Self {
-        Self { buffers: BTreeMap::new(), limit, used: 0, found: None }
+        Self { buffers: BTreeMap::new(), released: VecDeque::new(), limit, used: 0, found: None }
     }
 
     pub fn memory(&self) -> Memory {
@@ -76,11 +79,21 @@ impl Heap {
         let found = match self.buffers.remove(&address) {
             Some(buffer) => {
                 self.unreserve(buffer.bytes as u64);
-                buffer.damage()
+                let damage = buffer.damage();
+                self.keep(buffer);
+                damage
             }
             None => Some(format!("{address:#x} is released, but is no buffer's address")),
         };
         self.found = self.found.take().or(found);
+    }
+
+    fn keep(&mut self, buffer: Buffer) {
+        buffer.clear();
+        self.released.push_back(buffer);
+        while self.released.iter().map(|buffer| buffer.bytes).sum::<usize>() > KEPT {
+            self.released.pop_front();
+        }
     }
 
     /// Whether all guards are as they were.
@@ -110,11 +123,16 @@ impl Buffer {
         // SAFETY: guards make the size positive.
         let start = NonNull::new(unsafe { alloc::alloc(layout) })?;
         // SAFETY: just allocated with this size.
-        unsafe {
-            start.write_bytes(GUARD, layout.size());
-            start.add(ALIGNMENT).write_bytes(UNWRITTEN, bytes);
-        }
-        Some(Self { what, bytes, start })
+        unsafe { start.write_bytes(GUARD, layout.size()) }
+        let buffer = Self { what, bytes, start };
+        buffer.clear();
+        Some(buffer)
+    }
+
+    /// Makes the content arbitrary.
+    fn clear(&self) {
+        // SAFETY: the data is between the guards.
+        unsafe { self.start.add(ALIGNMENT).write_bytes(UNWRITTEN, self.bytes) }
     }
 
     fn layout(bytes: usize) -> Option<Layout> {

@@ -117,3 +117,28 @@ fn a_kernel_that_needs_too_much_stack_is_reported() {
     let a = Blocks { input: 0, output: buffer(&gpu, &[0u32; 32]), ticket: 0, n: 3, unused: 0 };
     assert!(failure(launch(&gpu, ("blocks", "deep"), (1, 32), &a)).contains("more stack"));
 }
+
+#[test]
+#[cfg_attr(not(host_compiler), ignore = "no C++ compiler")]
+fn threads_of_odd_blocks_run_backwards() {
+    let gpu = emulator();
+    let a = Blocks { input: 0, output: buffer(&gpu, &[0u32; 128]), ticket: buffer(&gpu, &[0u32; 2]), n: 0, unused: 0 };
+    launch(&gpu, ("blocks", "turns"), (2, 64), &a).unwrap();
+    let turns: Vec<u32> = (0..64).chain((0..64).rev()).collect();
+    assert_eq!(content::<u32>(&gpu, a.output, 128), turns);
+}
+
+#[test]
+#[cfg_attr(not(host_compiler), ignore = "no C++ compiler")]
+fn an_access_where_there_is_no_memory_is_reported_and_the_device_goes_on() {
+    let gpu = emulator();
+    let output = buffer(&gpu, &[0u32; 32]);
+    for input in [0, 64, 0xA5A5_A5A5_A5A5_A5A4] {
+        let text =
+            failure(launch(&gpu, ("blocks", "wild"), (3, 32), &Blocks { input, output, ticket: 0, n: 0, unused: 0 }));
+        assert!(text.contains("wild, block 0: thread 0 accesses"), "{text}");
+    }
+    let input = buffer(&gpu, &[5u32; 32]);
+    launch(&gpu, ("blocks", "wild"), (1, 32), &Blocks { input, output, ticket: 0, n: 0, unused: 0 }).unwrap();
+    assert_eq!(content::<u32>(&gpu, output, 32), [5; 32]);
+}

@@ -63,3 +63,14 @@ fn memory_is_limited_and_counted() {
     unsafe { gpu.release(address) };
     gpu.allocate("second", 1000).unwrap();
 }
+
+#[test]
+#[cfg_attr(not(host_compiler), ignore = "no C++ compiler")]
+fn who_reads_a_released_buffer_sees_a_pattern() {
+    let gpu = emulator();
+    let (input, output) = (buffer(&gpu, &[5u32; 32]), buffer(&gpu, &[0u32; 32]));
+    // SAFETY: from `allocate`; the emulator keeps it for those who use it again.
+    unsafe { gpu.release(input) };
+    launch(&gpu, ("blocks", "wild"), (1, 32), &Blocks { input, output, ticket: 0, n: 0, unused: 0 }).unwrap();
+    assert_eq!(content::<u32>(&gpu, output, 32), [0xA5A5_A5A5; 32]);
+}

@@ -1,10 +1,10 @@
 //! Every kernel, by the structure it takes.
 
 use crate::{
-    Kernel,
+    ByForce, Kernel, RayProgram,
     layouts::{
-        BoundsArgs, FinishExactArgs, GatherArgs, IntegrateArgs, ListArgs, MortonArgs, MotionArgs, PermuteArgs,
-        RescaleArgs, SampleArgs, ScanArgs, SortArgs, TotalsArgs,
+        AdvanceRays, BoundsArgs, BoxesArgs, FinishExactArgs, ForceRays, GatherArgs, IntegrateArgs, ListArgs, ListRays,
+        MortonArgs, MotionArgs, PermuteArgs, RescaleArgs, RowsArgs, SampleArgs, ScanArgs, SortArgs, TotalsArgs,
     },
 };
 
@@ -45,42 +45,25 @@ pub const CELL_COUNT: Kernel<SortArgs> = Kernel::new("cells", "cell_count", 256)
 /// Particles in the order of cells.
 pub const CELL_SCATTER: Kernel<SortArgs> = Kernel::new("cells", "cell_scatter", 256);
 
-/// Kernels for the forces on all particles by one way to find candidates; a warp for each [`CLUSTER`].
-#[derive(Clone, Copy)]
-pub struct ForceKernels {
-    /// Lennard-Jones of one type and one cutoff, not shifted in force.
-    pub uniform: Kernel<GatherArgs>,
-    /// Lennard-Jones of one type and a radius for each particle, not shifted in force.
-    pub scaled: Kernel<GatherArgs>,
-    /// Any law.
-    pub any: Kernel<GatherArgs>,
-    /// Any law, with energies, virials and neighbour counts.
-    pub any_energy: Kernel<GatherArgs>,
-    /// Any law in sums that do not depend on order.
-    pub exact: Kernel<GatherArgs>,
-    /// The same with energies, virials and neighbour counts.
-    pub exact_energy: Kernel<GatherArgs>,
-}
-
 /// Particles that a warp takes at a time.
 pub const CLUSTER: usize = 8;
 
-/// Candidates from cells.
-pub const CELL_FORCES: ForceKernels = ForceKernels {
-    uniform: Kernel::new("gather", "cell_uniform", 128),
-    scaled: Kernel::new("gather", "cell_scaled", 128),
-    any: Kernel::new("gather", "cell_any", 128),
-    any_energy: Kernel::new("gather", "cell_any_energy", 128),
-    exact: Kernel::new("gather", "cell_exact", 128),
-    exact_energy: Kernel::new("gather", "cell_exact_energy", 128),
+/// Forces from candidates in cells; a warp for each [`CLUSTER`].
+pub const CELL_FORCES: ByForce<Kernel<GatherArgs>> = ByForce {
+    uniform_lj: Kernel::new("cell_forces", "cell_uniform", 128),
+    scaled_lj: Kernel::new("cell_forces", "cell_scaled", 128),
+    fast: Kernel::new("cell_forces", "cell_any", 128),
+    energy: Kernel::new("cell_forces", "cell_any_energy", 128),
+    exact: Kernel::new("cell_forces", "cell_exact", 128),
+    exact_energy: Kernel::new("cell_forces", "cell_exact_energy", 128),
 };
 
-/// All particles as candidates.
-pub const BRUTE_FORCES: ForceKernels = ForceKernels {
-    uniform: Kernel::new("brute", "brute_uniform", 128),
-    scaled: Kernel::new("brute", "brute_scaled", 128),
-    any: Kernel::new("brute", "brute_any", 128),
-    any_energy: Kernel::new("brute", "brute_any_energy", 128),
+/// Forces by testing all pairs; a warp for each [`CLUSTER`].
+pub const BRUTE_FORCES: ByForce<Kernel<GatherArgs>> = ByForce {
+    uniform_lj: Kernel::new("brute", "brute_uniform", 128),
+    scaled_lj: Kernel::new("brute", "brute_scaled", 128),
+    fast: Kernel::new("brute", "brute_any", 128),
+    energy: Kernel::new("brute", "brute_any_energy", 128),
     exact: Kernel::new("brute", "brute_exact", 128),
     exact_energy: Kernel::new("brute", "brute_exact_energy", 128),
 };
@@ -93,3 +76,55 @@ pub const CELL_LIST_FILL: Kernel<ListArgs> = Kernel::new("lists", "cell_list_fil
 pub const BRUTE_LIST_COUNT: Kernel<ListArgs> = Kernel::new("lists", "brute_list_count", 128);
 /// Neighbours of each particle, listed by testing all pairs.
 pub const BRUTE_LIST_FILL: Kernel<ListArgs> = Kernel::new("lists", "brute_list_fill", 128);
+
+/// Boxes around particles and ghosts.
+pub const FIT_BOXES: Kernel<BoxesArgs> = Kernel::new("boxes", "fit_boxes", 256);
+/// Faces of particles, and the number of ghosts.
+pub const COUNT_GHOSTS: Kernel<BoxesArgs> = Kernel::new("ghosts", "count_ghosts", 256);
+/// Mirror particles.
+pub const MAKE_GHOSTS: Kernel<BoxesArgs> = Kernel::new("ghosts", "make_ghosts", 256);
+
+/// Forces from rows of neighbours.
+pub const ROWS: ByForce<Kernel<RowsArgs>> = ByForce {
+    fast: Kernel::new("rows", "rows", 128),
+    energy: Kernel::new("rows", "rows_energy", 128),
+    exact: Kernel::new("rows", "rows_exact", 128),
+    exact_energy: Kernel::new("rows", "rows_exact_energy", 128),
+    uniform_lj: Kernel::new("rows", "rows_uniform_lj", 128),
+    scaled_lj: Kernel::new("rows", "rows_scaled_lj", 128),
+};
+/// Threads that share a row of [`ROWS`].
+pub const ROWS_LANES: u64 = 8;
+
+const fn program<A: crate::Layout>(module: &'static str, name: &'static str) -> RayProgram<A> {
+    RayProgram::new(module, name, name)
+}
+
+/// Forces of all particles where one cutoff serves all pairs; there is no scaled Lennard-Jones.
+pub const RAY_GATHER: ByForce<RayProgram<ForceRays>> = ByForce {
+    fast: program("ray_gather", "gather"),
+    energy: program("ray_gather", "gather_energy"),
+    exact: program("ray_gather", "gather_exact"),
+    exact_energy: program("ray_gather", "gather_exact_energy"),
+    uniform_lj: program("ray_gather", "gather_uniform_lj"),
+    scaled_lj: program("ray_gather", "gather"),
+};
+/// Forces of all particles, added to zeros.
+pub const RAY_SCATTER: ByForce<RayProgram<ForceRays>> = ByForce {
+    fast: program("ray_scatter", "scatter"),
+    energy: program("ray_scatter", "scatter_energy"),
+    exact: program("ray_scatter", "scatter_exact"),
+    exact_energy: program("ray_scatter", "scatter_exact_energy"),
+    uniform_lj: program("ray_scatter", "scatter_uniform_lj"),
+    scaled_lj: program("ray_scatter", "scatter_scaled_lj"),
+};
+/// Forces of all particles and a step of theirs, in f32.
+pub const RAY_ADVANCE: RayProgram<AdvanceRays> = program("ray_advance", "advance");
+/// The same in sums that do not depend on order.
+pub const RAY_ADVANCE_EXACT: RayProgram<AdvanceRays> = program("ray_advance", "advance_exact");
+/// The same in f32 for plain Lennard-Jones.
+pub const RAY_ADVANCE_UNIFORM_LJ: RayProgram<AdvanceRays> = program("ray_advance", "advance_uniform_lj");
+/// Entries of each row of neighbours.
+pub const RAY_COUNT: RayProgram<ListRays> = program("ray_list", "count");
+/// Rows of neighbours.
+pub const RAY_FILL: RayProgram<ListRays> = program("ray_list", "fill");

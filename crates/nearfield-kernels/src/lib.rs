@@ -9,7 +9,9 @@ pub mod kernels;
 pub mod layout;
 pub mod layouts;
 mod modules;
+mod variants;
 
 pub use kernel::{Kernel, RayProgram};
 pub use layout::{Float4, Layout, Ptr};
 pub use modules::{MODULES, Module, RAY_MODULES};
+pub use variants::ByForce;

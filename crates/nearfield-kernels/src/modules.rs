@@ -16,7 +16,9 @@ macro_rules! modules {
 }
 
 /// CUDA kernels, from `cuda/`.
-pub const MODULES: &[Module] = modules!["integrate", "totals", "order", "scan", "cells", "gather", "brute", "lists"];
+pub const MODULES: &[Module] = modules![
+    "integrate", "totals", "order", "scan", "cells", "brute", "cell_forces", "lists", "boxes", "ghosts", "rows"
+];
 
 /// Ray-tracing programs, from `optix/`.
-pub const RAY_MODULES: &[Module] = modules![];
+pub const RAY_MODULES: &[Module] = modules!["ray_gather", "ray_scatter", "ray_advance", "ray_list"];

@@ -40,6 +40,7 @@ pub fn choose(engine: &mut dyn Engine, system: &System, plan: &Plan) -> Result<C
         return Ok(fallback("nothing to measure"));
     }
     let mut measured: Vec<(Method, f64)> = Vec::new();
+    let mut too_large = None;
     let begin = Instant::now();
     for &method in
         [Method::Cell, Method::RtBoxes, Method::RtPerse, Method::RtForces, Method::RtList, Method::Brute].iter()
@@ -58,8 +59,13 @@ pub fn choose(engine: &mut dyn Engine, system: &System, plan: &Plan) -> Result<C
             Err(Error::Coincident(..) | Error::NonFinite { .. }) => {
                 return Ok(fallback("particles overlap, so evaluations could not be timed; cell is the safe choice"));
             }
+            // What does not fit for one method may fit for another.
+            Err(error @ Error::OutOfMemory { .. }) => too_large = Some(error),
             Err(error) => return Err(error),
         }
+    }
+    if let (true, Some(error)) = (measured.is_empty(), too_large) {
+        return Err(error);
     }
     let (method, seconds) =
         measured.iter().copied().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((Method::Cell, f64::NAN));

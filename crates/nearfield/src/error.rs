@@ -85,10 +85,12 @@ pub enum Error {
 impl Error {
     /// Whether the request was wrong, rather than its execution: exit code 2 instead of 1.
     pub fn is_request(&self) -> bool {
+        use nearfield_core::Error::{Device, NonFinite};
         match self {
             Self::Interrupted { .. } | Self::Failed { .. } => false,
             // At step 0 nothing has run: the particles given overlap.
-            Self::Core(error) => !matches!(error, nearfield_core::Error::NonFinite { step: 1.., .. }),
+            Self::Core(NonFinite { step, .. }) => *step == 0,
+            Self::Core(Device(_)) => false,
             Self::Io(IoError::Read { .. }) => false,
             _ => true,
         }

@@ -33,7 +33,7 @@ mod simulation;
 mod thermo;
 
 pub use config::Device;
-pub use device::{DeviceStatus, devices, engine};
+pub use device::{DeviceStatus, GpuStatus, devices, engine};
 pub use error::{Error, Result};
 pub use methods::{MethodSupport, methods};
 pub use nearfield_core::{

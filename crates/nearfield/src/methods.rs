@@ -22,28 +22,31 @@ pub struct MethodSupport {
     pub list: bool,
 }
 
-/// Every method on every device of this version.
+/// Names of the devices that have the methods, without numbers.
+const DEVICES: [&str; 2] = ["cpu", "cuda"];
+
+/// Every method on every kind of device, whether this machine has one or not ([`crate::devices`] says so).
 pub fn methods() -> Vec<MethodSupport> {
-    Method::ALL
-        .iter()
-        .map(|&method| {
-            let (sentence, paper_name) = match method {
-                Method::Brute => ("no structure, all pairs, gather", "the oracle"),
-                Method::Cell => ("grid, cell scan, gather", "CPU-CELL (A)"),
-                Method::RtList => ("boxes, point ray, list", "RT-REF (A)"),
-                Method::RtForces => ("boxes, point ray, scatter", "ORCS-forces (A)"),
-                Method::RtPerse => ("boxes, point ray, advance", "ORCS-perse (A)"),
-                Method::RtBoxes => ("boxes, point ray, gather", "custom AABB (B)"),
-            };
-            MethodSupport {
-                method,
-                device: "cpu",
-                sentence,
-                paper_name,
-                variable_radii: method.supports_variable_radii(),
-                bvh: method.uses_bvh(),
-                list: method.uses_list(),
-            }
-        })
-        .collect()
+    DEVICES.iter().flat_map(|&device| Method::ALL.iter().map(move |&method| support(method, device))).collect()
+}
+
+fn support(method: Method, device: &'static str) -> MethodSupport {
+    let (sentence, paper_name) = match method {
+        Method::Brute => ("no structure, all pairs, gather", "the oracle"),
+        Method::Cell if device == "cpu" => ("grid, cell scan, gather", "CPU-CELL (A)"),
+        Method::Cell => ("grid, cell scan, gather", "GPU-CELL (A)"),
+        Method::RtList => ("boxes, point ray, list", "RT-REF (A)"),
+        Method::RtForces => ("boxes, point ray, scatter", "ORCS-forces (A)"),
+        Method::RtPerse => ("boxes, point ray, advance", "ORCS-perse (A)"),
+        Method::RtBoxes => ("boxes, point ray, gather", "custom AABB (B)"),
+    };
+    MethodSupport {
+        method,
+        device,
+        sentence,
+        paper_name,
+        variable_radii: method.supports_variable_radii(),
+        bvh: method.uses_bvh(),
+        list: method.uses_list(),
+    }
 }

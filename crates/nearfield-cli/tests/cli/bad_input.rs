@@ -136,7 +136,7 @@ fn an_unknown_method_device_or_word_lists_those_that_exist() {
     for line in ["run run.toml", "forces good.xyz", "neighbors good.xyz --cutoff 1"] {
         folder.refuse(&format!("{line} --method cel"), &methods);
         folder.refuse(&format!("{line} --device gpu"), &["gpu", "auto, cpu, cuda, cuda:N"]);
-        folder.refuse(&format!("{line} --device cuda"), &["device cuda is not available"]);
+        folder.refuse(&format!("{line} --device cuda:99"), &["device cuda:99 is not available"]);
     }
     folder.refuse("run run.toml --set method.name=cel", &methods);
     folder.refuse("run run.toml --set method.device=gpu", &["method.device", "cpu"]);
@@ -149,6 +149,26 @@ fn an_unknown_method_device_or_word_lists_those_that_exist() {
     folder.refuse("generate fcc -n 4 --density 1 --radii gauss:1,2 -o a.xyz", &["lognormal"]);
     folder.refuse("simulate run.toml", &["simulate"]);
     folder.refuse("run", &["CONFIG"]);
+}
+
+#[test]
+fn without_a_gpu_cuda_is_refused_with_what_was_looked_for_and_auto_is_the_cpu() {
+    let folder = Folder::new();
+    folder.write("good.xyz", GOOD);
+    let devices: serde_json::Value = serde_json::from_str(&folder.succeed("devices --json").stdout).unwrap();
+    let Some(cuda) = devices.as_array().unwrap().iter().find(|device| device["name"] == "cuda") else {
+        // Only where there is no GPU is there a device without a number.
+        return;
+    };
+    let reason = cuda["detail"].as_str().unwrap();
+    assert!(reason.contains("NVIDIA driver"), "{reason}");
+    for device in ["cuda", "cuda:0"] {
+        let line = format!("neighbors good.xyz --cutoff 1 --device {device}");
+        folder.refuse(&line, &[&format!("device {device} is not available"), reason]);
+    }
+    let json = folder.succeed("neighbors good.xyz --cutoff 1 --device auto --json").stdout;
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert!(json["device"].as_str().unwrap().starts_with("cpu"), "{json}");
 }
 
 #[test]

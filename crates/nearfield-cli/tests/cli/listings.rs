@@ -13,9 +13,11 @@ fn every_method_is_listed_with_what_it_supports() {
     let text = folder.succeed("methods").stdout;
     let json: serde_json::Value = serde_json::from_str(&folder.succeed("methods --json").stdout).unwrap();
     let names: Vec<&str> = json.as_array().unwrap().iter().map(|m| m["method"].as_str().unwrap()).collect();
-    assert_eq!(names, ["brute", "cell", "rt-list", "rt-forces", "rt-perse", "rt-boxes"]);
+    let each = ["brute", "cell", "rt-list", "rt-forces", "rt-perse", "rt-boxes"];
+    assert_eq!(names, [each, each].concat(), "on the CPU, then on CUDA");
     for method in json.as_array().unwrap() {
-        assert!(text.lines().any(|line| line.starts_with(method["method"].as_str().unwrap())), "{text}");
+        let words = ["method", "device"].map(|key| method[key].as_str().unwrap());
+        assert!(text.lines().any(|line| line.split_whitespace().take(2).eq(words)), "{words:?} in {text}");
         assert!(keys(method).is_superset(&BTreeSet::from(["method", "device", "sentence", "variable_radii"])));
     }
 }
@@ -27,6 +29,18 @@ fn every_device_is_listed_usable_or_with_a_reason() {
     let devices = json.as_array().unwrap();
     assert!(devices.iter().any(|device| device["name"] == "cpu" && device["usable"] == true));
     assert!(devices.iter().all(|device| !device["detail"].as_str().unwrap().is_empty()));
+    for device in devices.iter().filter(|device| device["name"].as_str().unwrap().starts_with("cuda")) {
+        if device["usable"] == true {
+            assert!(keys(device).is_superset(&BTreeSet::from([
+                "model",
+                "memory",
+                "compute_capability",
+                "ray_tracing"
+            ])));
+        } else {
+            assert!(device["detail"].as_str().unwrap().contains("NVIDIA driver"), "what was looked for: {device}");
+        }
+    }
     let text = folder.succeed("devices").stdout;
     assert_eq!(text.lines().count(), devices.len(), "one line each: {text}");
 }

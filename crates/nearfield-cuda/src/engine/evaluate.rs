@@ -14,7 +14,7 @@ impl Loaded {
         self.results.prepare(self.state.len(), quantities.energy)?;
         let Self { plan, physics, state, results, structure, report, .. } = self;
         let query = Query { plan, physics, state, results, energy: quantities.energy, report };
-        structure.evaluate(query)?;
+        structure.evaluate(&gpu, query)?;
         self.report.evaluations += 1;
         let costs =
             self.timeline.end(&*gpu, &mut self.report, self.policy.needs_cost() && self.plan.method.uses_bvh())?;
@@ -44,7 +44,7 @@ impl Loaded {
         if updated.built {
             self.report.builds += 1;
             if self.policy.needs_motion() {
-                self.reference.set(&self.state)?;
+                self.reference.set(&self.state.particles())?;
             }
         } else {
             self.report.refits += 1;
@@ -62,7 +62,10 @@ impl Loaded {
         }
         let mut motion = Motion::default();
         if self.policy.needs_motion() {
-            motion.mean = self.reference.moved(&self.state, &self.physics)?.mean_over_radius as f32;
+            motion.mean = self
+                .reference
+                .moved(&self.state.particles(), &self.physics.space, self.physics.law.cutoff)?
+                .mean_over_radius as f32;
         }
         Ok(self.policy.decide(motion))
     }

@@ -44,7 +44,7 @@ impl Loaded {
             state: State::new(gpu, system)?,
             results: Results::new(gpu),
             totalizer: Totalizer::new(gpu, &system.interaction)?,
-            structure: Structure::new(gpu, plan, &physics)?,
+            structure: Structure::new(gpu, plan)?,
             policy: plan.maintenance.policy(),
             reference: Reference::new(gpu),
             surveyor: Surveyor::new(gpu),

@@ -4,7 +4,7 @@ mod diagnose;
 mod evaluate;
 mod integrate;
 mod loaded;
-mod motion;
+pub(crate) mod motion;
 mod order;
 mod physics;
 mod results;
@@ -61,7 +61,7 @@ impl Engine for CudaEngine {
                 reason: "it needs one radius for all particles; use cell, rt-list or rt-forces",
             });
         }
-        if plan.method.uses_bvh() && self.gpu.ray_tracing().is_err() {
+        if plan.method != nearfield_core::Method::Brute || plan.method.uses_bvh() && self.gpu.ray_tracing().is_err() {
             return Err(Error::Unsupported {
                 method: plan.method,
                 reason: "the driver offers no OptiX (see `nearfield devices`); use cell",

@@ -10,10 +10,6 @@ use nearfield_kernels::{
 };
 use std::sync::Arc;
 
-/// Numbers of potentials and truncations in [`Law`].
-const LENNARD_JONES: u32 = 0;
-const FORCE_SHIFTED: u32 = 2;
-
 /// Where candidates come from.
 #[derive(Clone, Copy)]
 pub enum Candidates<'a> {
@@ -79,14 +75,6 @@ pub struct ForceQuery {
     pub exact: bool,
 }
 
-impl ForceQuery {
-    /// Whether pairs are of one type with plain Lennard-Jones forces, for which there are faster kernels.
-    fn is_plain(&self) -> bool {
-        let Law { potential, truncation, n_types, .. } = self.law;
-        potential == LENNARD_JONES && truncation != FORCE_SHIFTED && n_types == 1
-    }
-}
-
 /// Enqueues the forces on all particles.
 ///
 /// # Safety
@@ -99,14 +87,7 @@ pub unsafe fn forces(gpu: &dyn Gpu, candidates: Candidates, query: &ForceQuery) 
         Candidates::Cells(_) => CELL_FORCES,
         Candidates::All { .. } => kernels::BRUTE_FORCES,
     };
-    let kernel = match (query.exact, query.energy) {
-        (true, true) => family.exact_energy,
-        (true, false) => family.exact,
-        (false, true) => family.any_energy,
-        (false, false) if !query.is_plain() => family.any,
-        (false, false) if query.law.variable != 0 => family.scaled,
-        (false, false) => family.uniform,
-    };
+    let kernel = family.choose(&query.law, query.exact, query.energy);
     let arguments = GatherArgs {
         law: query.law,
         space: query.space,

@@ -92,3 +92,13 @@ KERNEL(deep, BlocksArgs, 32) {
     for (u32 i = 0; i < 1 << 14; ++i) large[i] = i;
     a.output[threadIdx.x] = large[a.n];
 }
+
+// The turn of each thread in its block.
+KERNEL(turns, BlocksArgs, 64) {
+    a.output[thread_index()] = atomicAdd(&a.ticket[blockIdx.x], 1u);
+}
+
+// Reads an input at a place where there is none.
+KERNEL(wild, BlocksArgs, 32) {
+    a.output[threadIdx.x] = a.input[threadIdx.x];
+}

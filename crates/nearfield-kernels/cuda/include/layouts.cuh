@@ -419,3 +419,144 @@ struct ListArgs {
     u32 unused;
 };
 static_assert(sizeof(ListArgs) == 736, "ListArgs differs between host and device");
+
+// A mirror particle: a box around a periodic image.
+struct Ghost {
+    // Place of the particle.
+    u32 particle;
+    // Periodic image.
+    u32 image;
+};
+static_assert(sizeof(Ghost) == 8, "Ghost differs between host and device");
+
+// Arguments of `fit_boxes`, `count_ghosts` and `make_ghosts`.
+struct BoxesArgs {
+    // The box.
+    Box3 space;
+    // Positions, with radii in w where they are per particle.
+    float4 *position;
+    // Low and high corner of a box around each particle, then of each ghost, `[n + n_ghosts][6]`.
+    float *boxes;
+    // Mirror particles, `[n_ghosts]`.
+    Ghost *ghost;
+    // Faces for which each particle has ghosts, `[n]`: bit `2 axis` the lower, bit `2 axis + 1` the upper one.
+    // Null where there are no ghosts.
+    u8 *faces;
+    // Number of ghosts, counted or made; for `fit_boxes` set to 1 where a particle needs one that it lacks.
+    u32 *counter;
+    // Number of particles.
+    u32 n;
+    // Number of ghosts.
+    u32 n_ghosts;
+    // The one cutoff; zero where radii are per particle.
+    float cutoff;
+    // Added to radii.
+    float skin;
+    // What roundings of coordinates may amount to.
+    float slack;
+    // How far particles may move before they lack ghosts.
+    float margin;
+};
+static_assert(sizeof(BoxesArgs) == 112, "BoxesArgs differs between host and device");
+
+// What rays need to know.
+struct Rays {
+    // The interaction.
+    Law law;
+    // The box.
+    Box3 space;
+    // The particles, each with a ray from its position and a box around it.
+    Particles particles;
+    // What rays are traced against.
+    u64 handle;
+    // Mirror particles, whose boxes follow those of the particles.
+    Ghost *ghost;
+    // How rays see periodic images: 0 by gamma rays, 1 in instances, 2 as ghosts.
+    u32 view;
+    // Number of images.
+    u32 n_images;
+    // The images, in order of instances; the box itself comes first.
+    u8 image[32];
+    // Particles at or below this need gamma rays to image -1.
+    float near_lo[3];
+    // Particles at or above this need gamma rays to image +1.
+    float near_hi[3];
+    // Added to ranges.
+    float skin;
+    // Place of the particle of the first ray.
+    u32 first;
+};
+static_assert(sizeof(Rays) == 264, "Rays differs between host and device");
+
+// Parameters of the programs in `ray_gather` and `ray_scatter`.
+struct ForceRays {
+    // The rays.
+    Rays rays;
+    // Where forces go.
+    Results results;
+};
+static_assert(sizeof(ForceRays) == 304, "ForceRays differs between host and device");
+
+// Parameters of the programs in `ray_advance`.
+struct AdvanceRays {
+    // The rays.
+    Rays rays;
+    // Where forces go.
+    Results results;
+    // How particles move.
+    Integrator integrator;
+    // Where positions go: rays of other particles still need the present ones.
+    float4 *position;
+    // What went wrong.
+    Status *status;
+    // The step that the forces belong to.
+    u64 step;
+};
+static_assert(sizeof(AdvanceRays) == 416, "AdvanceRays differs between host and device");
+
+// Parameters of the programs in `ray_list`.
+struct ListRays {
+    // The rays.
+    Rays rays;
+    // Row and number in the list of each particle; null where these are places.
+    u32 *id;
+    // Entries of each row; where radii are per particle zero before they are counted, and counted down while rows
+    // are filled.
+    u32 *count;
+    // Row starts, `[n + 1]`.
+    u64 *offset;
+    // Neighbours.
+    u32 *index;
+    // Periodic image of each neighbour; null where nobody asks.
+    u8 *image;
+    // Entries before the first that is stored.
+    u64 base;
+    // 1 for half lists: only neighbours of larger number.
+    u32 half;
+    // Zero.
+    u32 unused;
+};
+static_assert(sizeof(ListRays) == 320, "ListRays differs between host and device");
+
+// Arguments of `rows_*`: forces from stored rows of neighbours, numbered by place.
+struct RowsArgs {
+    // The interaction.
+    Law law;
+    // The box.
+    Box3 space;
+    // The particles.
+    Particles particles;
+    // Row starts, `[n + 1]`.
+    u64 *offset;
+    // Candidates: they may have left the range since they were listed.
+    u32 *index;
+    // Where forces go.
+    Results results;
+    // Entries before the first that is stored.
+    u64 base;
+    // First row.
+    u32 first;
+    // Number of rows.
+    u32 n_rows;
+};
+static_assert(sizeof(RowsArgs) == 248, "RowsArgs differs between host and device");

@@ -8,7 +8,6 @@
 #ifndef RAYGEN
 #define RAYGEN(name) extern "C" __global__ void __raygen__##name()
 #define INTERSECTION(name) extern "C" __global__ void __intersection__##name()
-#define MISS(name) extern "C" __global__ void __miss__##name()
 // The launch parameters, called `params`.
 #define PARAMETERS(Args)                                                                                               \
     extern "C" {                                                                                                       \
@@ -54,7 +53,7 @@ template <u32 I> __device__ inline void set_payload(u32 value) {
 
 // In a ray generation: calls the intersection program for each box that holds the point, by an infinitesimal ray.
 __device__ inline void trace(u64 handle, float x, float y, float z, u32 (&p)[PAYLOAD_WORDS]) {
-    u32 dummy[12];
+    [[maybe_unused]] u32 dummy[12];
     const float zero = 0.0f, one = 1.0f, tmax = 1e-16f;
     const u32 none = 0, mask = 255, stride = 1, count = PAYLOAD_WORDS;
     // Terminating rays or calling closest-hit programs is never needed: intersections report nothing.

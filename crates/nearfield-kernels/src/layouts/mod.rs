@@ -3,10 +3,12 @@
 mod grid;
 mod particles;
 mod physics;
+mod tracing;
 
 pub use grid::*;
 pub use particles::*;
 pub use physics::*;
+pub use tracing::*;
 
 use crate::layout::Definition;
 
@@ -16,7 +18,7 @@ pub fn header() -> String {
         "// Generated from nearfield-kernels/src/layouts by `cargo xtask ptx`; edit there.\n\n#pragma once\n\n\
          #include \"base.cuh\"\n",
     );
-    let files = [physics::definitions(), particles::definitions(), grid::definitions()];
+    let files = [physics::definitions(), particles::definitions(), grid::definitions(), tracing::definitions()];
     for Definition { text: definition } in files.iter().flatten() {
         text.push('\n');
         text.push_str(definition);

@@ -5,7 +5,7 @@ use std::{fmt, str::FromStr};
 /// Where to compute.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Device {
-    /// The fastest one that is usable.
+    /// The first GPU that can be used, else the CPU.
     #[default]
     Auto,
     /// CPU threads.

@@ -110,7 +110,11 @@ const TYPE: &[Key] = &[
 
 const METHOD: &[Key] = &[
     key("name", Accepts::Names(|| or_auto(Method::ALL.iter().map(|m| m.name()))), "how pairs are found"),
-    key("device", Accepts::Names(|| vec!["auto", "cpu", "cuda", "cuda:N"]), "where"),
+    key(
+        "device",
+        Accepts::Names(|| vec!["auto", "cpu", "cuda", "cuda:N"]),
+        "where; auto: the first usable GPU, else the CPU",
+    ),
     key(
         "maintenance",
         Accepts::Names(|| vec!["every", "fixed:K", "average", "gradient", "displacement"]),

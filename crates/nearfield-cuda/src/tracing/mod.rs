@@ -1,0 +1,19 @@
+//! Ray-traced methods: an acceleration structure over boxes around particles, and an infinitesimal ray from each.
+//!
+//! The box of particle j has its radius as half width, so the ray of i meets exactly the j with `|x_i - x_j| < r_j` on
+//! each axis, the rest of which the predicate refuses in the intersection program. That program also consumes the pair:
+//! nothing is reported, and no other program runs.
+
+mod bvh;
+mod ghosts;
+mod query;
+mod rows;
+mod scene;
+mod stored_list;
+mod view;
+
+pub use bvh::Bvh;
+pub use query::Step;
+pub use rows::{ListBuffers, RowNumbers};
+pub use scene::{Scene, Sums, Updated};
+pub use stored_list::{Outcome, StoredList};
