@@ -217,7 +217,7 @@ fn order_independent_sums_are_the_same_by_cells_and_by_all_pairs() {
     }
 }
 
-/// Lennard-Jones forces by the fast kernels and by those for any law, compared by the largest force there is.
+/// Compared by the largest force there is, and at least by that of one pair: on lattices the sums cancel.
 #[test]
 #[cfg_attr(not(host_compiler), ignore = "no C++ compiler")]
 fn fast_kernels_give_the_forces_of_those_for_any_law() {
@@ -226,7 +226,7 @@ fn fast_kernels_give_the_forces_of_those_for_any_law() {
         let sigma = 0.4 * f64::from(system.radii.largest());
         let uniform = matches!(system.radii, Radii::Uniform(_));
         device.law.potential = 0;
-        device.law.cap = (1e4 / (sigma * sigma)) as f32;
+        device.law.cap = (100.0 / (sigma * sigma)) as f32;
         device.law.lj_repulsion = if uniform { (48.0 * sigma.powi(12)) as f32 } else { 1.0 };
         device.law.lj_attraction = (24.0 * sigma.powi(6)) as f32;
         // The fast kernels compute sigma^12, which must be a normal number.
@@ -235,7 +235,7 @@ fn fast_kernels_give_the_forces_of_those_for_any_law() {
         }
         device.evaluate(false, true, false);
         let expected = device.results();
-        let scale = expected.iter().flat_map(|r| r.0).fold(1e-30f32, |m, f| m.max(f.abs()));
+        let scale = expected.iter().flat_map(|r| r.0).fold(100.0 / sigma as f32, |m, f| m.max(f.abs()));
         for cells in [true, false] {
             device.evaluate(cells, false, false);
             for (i, (found, expected)) in device.results().iter().zip(&expected).enumerate() {
