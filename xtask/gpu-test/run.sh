@@ -27,6 +27,8 @@ mkdir -p "$output" && output="$(cd "$output" && pwd)" || exit 2
 here="$(cd "$(dirname "$0")" && pwd)"
 nearfield="$here/bin/nearfield"
 tests="$here/bin/gpu"
+# Some ways to copy files lose their modes.
+chmod +x "$here"/bin/* 2>/dev/null
 export NEARFIELD_MELT_STEPS="${NEARFIELD_MELT_STEPS:-100000}"
 
 stages=()
