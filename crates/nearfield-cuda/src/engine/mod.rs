@@ -81,6 +81,9 @@ impl Engine for CudaEngine {
     }
 
     fn supports(&self, system: &System, plan: &Plan) -> Result<()> {
+        if plan.method == nearfield_core::Method::Cluster {
+            return Err(Error::Unsupported { method: plan.method, reason: "the GPU has no clusters yet; use cell" });
+        }
         if !system.radii.is_uniform() && !plan.method.supports_variable_radii() {
             return Err(Error::Unsupported {
                 method: plan.method,

@@ -37,6 +37,7 @@ impl Structure {
         Ok(match plan.method {
             Method::Brute => Self::Brute,
             Method::Cell => Self::Cells(Box::new(Grid::new(gpu))),
+            Method::Cluster => unreachable!("refused by supports"),
             Method::RtForces | Method::RtPerse | Method::RtBoxes => Self::Boxes(Bvh::new(gpu, plan.images)?),
             Method::RtList => {
                 Self::List(Bvh::new(gpu, plan.images)?, StoredList::new(gpu, plan, &physics.sim_box, physics.largest))
