@@ -17,7 +17,17 @@ macro_rules! modules {
 
 /// CUDA kernels, from `cuda/`.
 pub const MODULES: &[Module] = modules![
-    "integrate", "totals", "order", "scan", "cells", "brute", "cell_forces", "lists", "boxes", "ghosts", "rows"
+    "integrate",
+    "totals",
+    "order",
+    "scan",
+    "cells",
+    "brute",
+    "cell_forces",
+    "lists",
+    "boxes",
+    "ghosts",
+    "rows"
 ];
 
 /// Ray-tracing programs, from `optix/`.

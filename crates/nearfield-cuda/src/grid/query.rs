@@ -4,7 +4,7 @@ use super::Grid;
 use crate::{Buffer, Gpu, gpu::launch, scan::Scan};
 use nearfield_core::{ListKind, Result};
 use nearfield_kernels::{
-    Float4, Kernel, Ptr,
+    Float4, Ptr,
     kernels::{self, CELL_FORCES, CLUSTER},
     layouts::{self, Box3, GatherArgs, Law, ListArgs, Results},
 };
@@ -152,9 +152,11 @@ impl DeviceList {
     /// As [`Gpu::allocate`] and [`Gpu::launch`].
     pub unsafe fn fill(&mut self, candidates: Candidates, query: &ListQuery) -> Result<()> {
         let n = candidates.n();
-        let (count, fill): (Kernel<ListArgs>, _) = match candidates {
-            Candidates::Cells(_) => (kernels::CELL_LIST_COUNT, kernels::CELL_LIST_FILL),
-            Candidates::All { .. } => (kernels::BRUTE_LIST_COUNT, kernels::BRUTE_LIST_FILL),
+        let kernels = match (candidates, query.law.variable != 0) {
+            (Candidates::Cells(_), false) => kernels::CELL_LIST,
+            (Candidates::Cells(_), true) => kernels::CELL_LIST_RADII,
+            (Candidates::All { .. }, false) => kernels::BRUTE_LIST,
+            (Candidates::All { .. }, true) => kernels::BRUTE_LIST_RADII,
         };
         self.count.resize(n)?;
         self.count.zero()?;
@@ -170,14 +172,14 @@ impl DeviceList {
             ..Default::default()
         };
         // SAFETY: the caller's promise, and a count for each row.
-        unsafe { launch(&*self.gpu, count, candidates.threads(), &arguments)? };
+        unsafe { launch(&*self.gpu, kernels.count, candidates.threads(), &arguments)? };
         self.scan.run_wide(&self.count, &mut self.offset)?;
         let entries = self.offset.download_range(n, 1)?[0] as usize;
         self.index.resize_with_room(entries)?;
         self.image.resize_with_room(if query.images { entries } else { 0 })?;
         (arguments.offset, arguments.index, arguments.image) = (self.offset.ptr(), self.index.ptr(), self.image.ptr());
         // SAFETY: the same pairs are found again, for which there is room.
-        unsafe { launch(&*self.gpu, fill, candidates.threads(), &arguments) }
+        unsafe { launch(&*self.gpu, kernels.fill, candidates.threads(), &arguments) }
     }
 
     /// Bytes held on the device.
