@@ -5,6 +5,7 @@ mod device;
 mod engine;
 pub mod gpu;
 pub mod grid;
+mod list;
 mod scan;
 pub mod tracing;
 
@@ -12,3 +13,4 @@ pub use buffer::Buffer;
 pub use device::{CudaDevice, DeviceInfo, Unavailable, devices};
 pub use engine::CudaEngine;
 pub use gpu::Gpu;
+pub use list::DeviceList;

@@ -8,24 +8,24 @@
 PARAMETERS(AdvanceRays)
 
 // Not inlined: half a module's code, the same in all programs.
-__device__ __noinline__ void move_particle(const AdvanceRays& a, u32 i, float4 force) {
-    const Particles& from = a.rays.particles;
+__device__ __noinline__ void move_particle(u32 i, float4 force) {
+    const Particles& from = params.rays.particles;
     const u32 id = from.id[i];
     Moving p = load_moving(from, i);
     // A particle that has failed is left where it was, so that coordinates stay finite until the run is stopped.
-    a.position[i] = p.position;
+    params.position[i] = p.position;
     if (!all_finite(force)) {
-        atomicMin(&a.status->force, failure(a.step, id));
+        atomicMin(&params.status->force, failure(params.step, id));
         return;
     }
-    finish_step(a.integrator, p, force);
-    start_step(a.integrator, p, force, id, a.step + 1);
+    finish_step(params.integrator, p, force);
+    start_step(params.integrator, p, force, id, params.step + 1);
     if (!all_finite(p.position)) {
-        atomicMin(&a.status->position, failure(a.step + 1, id));
+        atomicMin(&params.status->position, failure(params.step + 1, id));
         return;
     }
     Particles to = from;
-    to.position = a.position;
+    to.position = params.position;
     store_moving(to, i, p);
 }
 
@@ -33,7 +33,7 @@ template <bool EXACT> __device__ inline void advance_rays() {
     const u32 i = params.rays.first + rt::ray_index();
     const Sums<EXACT, false> sums = sum_rays<EXACT, false>(params.rays, i);
     store_sums<false>(params.results, params.rays.law, params.rays.particles.n, i, sums);
-    move_particle(params, i, params.results.force[i]);
+    move_particle(i, params.results.force[i]);
 }
 
 template <class L, bool EXACT> __device__ inline void advance_pair() {

@@ -6,6 +6,7 @@ use std::{
     fs,
     path::{Path, PathBuf},
     process::Command,
+    thread,
 };
 
 /// From Turing to Blackwell.
@@ -41,11 +42,11 @@ impl<'a> Assembler<'a> {
 
     /// Assembles for each of [`ARCHITECTURES`].
     pub fn assemble_for_all(&self, source: &Source, ptx: &str) -> Result<(), String> {
-        let input = self.input(source, ptx)?;
-        for architecture in ARCHITECTURES {
-            self.ptxas(&input, architecture)?;
-        }
-        Ok(())
+        let input = &self.input(source, ptx)?;
+        thread::scope(|scope| {
+            let runs = ARCHITECTURES.map(|architecture| scope.spawn(move || self.ptxas(input, architecture)));
+            runs.into_iter().try_for_each(|run| run.join().expect("threads only run ptxas").map(drop))
+        })
     }
 
     /// What each kernel of a module needs.
@@ -64,7 +65,8 @@ impl<'a> Assembler<'a> {
     fn ptxas(&self, input: &Path, architecture: &str) -> Result<String, String> {
         let mut command = Command::new(self.ptxas);
         command.arg("--verbose").arg(format!("--gpu-name=sm_{architecture}")).arg(input);
-        let output = command.arg("--output-file").arg(input.with_extension("cubin")).output();
+        let output =
+            command.arg("--output-file").arg(input.with_extension(format!("sm_{architecture}.cubin"))).output();
         let output = output.map_err(|error| format!("{}: {error}", self.ptxas.display()))?;
         let messages = [output.stdout, output.stderr].concat();
         let messages = String::from_utf8_lossy(&messages).into_owned();

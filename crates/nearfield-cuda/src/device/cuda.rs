@@ -3,6 +3,7 @@
 use super::{
     Unavailable,
     find::{self, describe},
+    optix::Optix,
 };
 use crate::gpu::{Gpu, Launch, Mark, Memory, RayTracing};
 use cudarc::{
@@ -15,7 +16,7 @@ use std::{
     any::Any,
     collections::HashMap,
     ffi::c_void,
-    sync::{Arc, Mutex, PoisonError},
+    sync::{Arc, Mutex, OnceLock, PoisonError},
 };
 
 /// A GPU of this machine.
@@ -23,6 +24,8 @@ pub struct CudaDevice {
     context: Arc<CudaContext>,
     stream: Arc<CudaStream>,
     loaded: Mutex<Loaded>,
+    /// OptiX, or why there is none, once somebody has asked.
+    tracing: OnceLock<std::result::Result<Optix, String>>,
 }
 
 /// Modules and kernels, loaded when first used.
@@ -44,13 +47,29 @@ impl CudaDevice {
     /// With a new stream of a context.
     pub(super) fn on(context: Arc<CudaContext>) -> Result<Self> {
         let stream = context.new_stream().map_err(failed("making a stream"))?;
-        Ok(Self { context, stream, loaded: Mutex::default() })
+        Ok(Self::with_stream(context, stream))
+    }
+
+    fn with_stream(context: Arc<CudaContext>, stream: Arc<CudaStream>) -> Self {
+        Self { context, stream, loaded: Mutex::default(), tracing: OnceLock::new() }
     }
 
     /// Makes the context the calling thread's: engines may move between threads.
-    fn bind(&self) -> Result<sys::CUstream> {
+    pub(super) fn bind(&self) -> Result<sys::CUstream> {
         self.context.bind_to_thread().map_err(failed("binding the context"))?;
         Ok(self.stream.cu_stream())
+    }
+
+    /// The context for other libraries, made the calling thread's.
+    pub(super) fn cu_context(&self) -> Result<*mut c_void> {
+        self.bind()?;
+        Ok(self.context.cu_ctx().cast())
+    }
+
+    /// What ray tracing had to say since the last time: warnings and errors of OptiX where the environment variable
+    /// `NEARFIELD_OPTIX_VALIDATION` was 1 when it was first used, nothing otherwise.
+    pub fn take_ray_tracing_messages(&self) -> Vec<String> {
+        self.tracing.get().and_then(|tracing| tracing.as_ref().ok()).map(Optix::take_messages).unwrap_or_default()
     }
 
     fn kernel(&self, module: &'static str, name: &'static str) -> Result<CudaFunction> {
@@ -170,7 +189,10 @@ impl Gpu for CudaDevice {
     }
 
     fn ray_tracing(&self) -> std::result::Result<&dyn RayTracing, String> {
-        Err("this version traces no rays".into())
+        // Structures may outlive this value, so OptiX has a handle of its own to context and stream.
+        let handle = || Self::with_stream(self.context.clone(), self.stream.clone());
+        let tracing = self.tracing.get_or_init(|| Optix::new(handle()));
+        tracing.as_ref().map(|tracing| tracing as &dyn RayTracing).map_err(Clone::clone)
     }
 }
 

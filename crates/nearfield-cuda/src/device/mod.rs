@@ -3,6 +3,8 @@
 mod cuda;
 mod error;
 mod find;
+mod optix;
+mod structure;
 
 pub use cuda::CudaDevice;
 pub use error::Unavailable;

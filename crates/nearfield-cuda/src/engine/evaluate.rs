@@ -1,6 +1,12 @@
 //! One evaluation of the forces: upkeep of the structure, then the method's query.
 
-use super::{loaded::Loaded, order, structure::Query};
+use super::{
+    integrate::Integrator,
+    loaded::Loaded,
+    order::{self, MortonOrder},
+    structure::Query,
+};
+use crate::{grid::Grid, tracing::Step};
 use nearfield_core::{
     Order, Quantities, Result, StepCost,
     maintenance::{Action, Motion},
@@ -9,15 +15,39 @@ use nearfield_core::{
 impl Loaded {
     /// Enqueues forces, and what else is asked for, at the present positions, which belong to `step`.
     pub fn evaluate(&mut self, quantities: Quantities, step: u64) -> Result<()> {
-        let gpu = self.gpu.clone();
         self.prepare(step)?;
         self.results.prepare(self.state.len(), quantities.energy)?;
         let Self { plan, physics, state, results, structure, report, .. } = self;
+        let scene = physics.scene(state);
         let query = Query { plan, physics, state, results, energy: quantities.energy, report };
-        structure.evaluate(&gpu, query)?;
+        structure.evaluate(query, &scene)?;
+        self.account()
+    }
+
+    /// ORCS-persé (paper A, section 3.2.1): the pass that finds a particle's force also moves it through the rest of
+    /// `step` and the beginning of the next.
+    pub fn evaluate_and_move(&mut self, integrator: &Integrator, step: u64) -> Result<()> {
+        self.prepare(step)?;
+        let n = self.state.len();
+        self.results.prepare(n, false)?;
+        self.next_position.resize(n)?;
+        let movement = Step {
+            integrator: integrator.layout(),
+            position: self.next_position.ptr(),
+            status: self.totalizer.status().ptr(),
+            number: step,
+        };
+        let scene = self.physics.scene(&self.state);
+        self.structure.advance(&self.plan, &scene, self.results.layout(), &movement)?;
+        std::mem::swap(&mut self.state.moving.position, &mut self.next_position);
+        self.account()
+    }
+
+    /// Books an evaluation whose query has been enqueued.
+    fn account(&mut self) -> Result<()> {
         self.report.evaluations += 1;
-        let costs =
-            self.timeline.end(&*gpu, &mut self.report, self.policy.needs_cost() && self.plan.method.uses_bvh())?;
+        let wait = self.policy.needs_cost() && self.plan.method.uses_bvh();
+        let costs = self.timeline.end(&*self.gpu, &mut self.report, wait)?;
         self.book(costs);
         Ok(())
     }
@@ -26,7 +56,7 @@ impl Loaded {
     pub fn prepare(&mut self, step: u64) -> Result<()> {
         let gpu = self.gpu.clone();
         self.timeline.begin(&*gpu, self.record_history)?;
-        if self.built && self.structure.is_fresh(&self.state, &self.physics)? {
+        if self.built && self.structure.is_fresh(&self.physics.scene(&self.state))? {
             return Ok(());
         }
         let action = self.next_action()?;
@@ -34,12 +64,11 @@ impl Loaded {
             self.reorder()?;
             self.sorted_at = Some(step);
         }
-        if self.structure.needs_survey() && self.surveyed_at.is_none_or(|then| step >= then + order::INTERVAL) {
-            let survey = self.surveyor.survey(&self.state)?;
-            self.structure.plan(&survey, &self.physics)?;
-            self.surveyed_at = Some(step);
+        if self.structure.needs_plan() && self.planned_at.is_none_or(|then| step >= then + order::INTERVAL) {
+            self.structure.plan(&self.surveyor.survey(&self.state)?, &self.physics);
+            self.planned_at = Some(step);
         }
-        let updated = self.structure.update(action, &self.state, &self.physics)?;
+        let updated = self.structure.update(action, &self.physics.scene(&self.state))?;
         self.report.forced_builds += u64::from(updated.forced);
         if updated.built {
             self.report.builds += 1;
@@ -71,18 +100,20 @@ impl Loaded {
     }
 
     fn reorder(&mut self) -> Result<()> {
-        let force = &mut self.results.force;
+        let Self { gpu, state, physics, surveyor, .. } = self;
         match self.plan.order {
             Order::None => Ok(()),
             Order::Morton => {
-                let survey = self.surveyor.survey(&self.state)?;
-                let order = self.morton.sort(&self.state, &survey.bounds)?.ptr();
-                self.state.permute(order, force)
+                let mut morton = MortonOrder::new(gpu);
+                let order = morton.sort(state, &surveyor.survey(state)?.bounds)?.ptr();
+                state.permute(order, &mut self.results.force)
             }
             Order::Cell => {
-                let survey = self.surveyor.survey(&self.state)?;
-                let order = self.structure.cell_order(&self.gpu, &survey, &self.state, &self.physics)?;
-                self.state.permute(order, force)
+                let mut grid = Grid::new(gpu);
+                grid.plan(&physics.survey(&surveyor.survey(state)?));
+                // SAFETY: the state's positions are n.
+                unsafe { grid.build(state.moving.position.ptr(), state.len(), physics.law.variable != 0)? };
+                state.permute(grid.order().ptr(), &mut self.results.force)
             }
         }
     }

@@ -84,6 +84,11 @@ impl Integrator {
         Ok(Self { gpu: gpu.clone(), layout, _half_kick: half_kick, _noise: noise, rescaling })
     }
 
+    /// For kernels that move particles themselves.
+    pub fn layout(&self) -> layouts::Integrator {
+        self.layout
+    }
+
     /// Whether velocities are rescaled after each step.
     pub fn rescales(&self) -> bool {
         self.rescaling.is_some()

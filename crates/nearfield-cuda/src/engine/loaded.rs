@@ -1,11 +1,12 @@
 //! A loaded system.
 
 use super::{
-    motion::Reference, order::MortonOrder, physics::Physics, results::Results, state::State, structure::Structure,
+    list::Lister, motion::Reference, physics::Physics, results::Results, state::State, structure::Structure,
     survey::Surveyor, timeline::Timeline, totals::Totalizer,
 };
 use crate::{Buffer, Gpu};
 use nearfield_core::{Plan, Report, Result, System, engine::MemoryOrder, maintenance::Policy};
+use nearfield_kernels::Float4;
 use std::sync::Arc;
 
 /// A system on the device, with everything its computation keeps.
@@ -15,13 +16,16 @@ pub(crate) struct Loaded {
     pub physics: Physics,
     pub state: State,
     pub results: Results,
+    /// Where positions go that move while others are still looked at.
+    pub next_position: Buffer<Float4>,
     pub totalizer: Totalizer,
     pub structure: Structure,
     pub policy: Box<dyn Policy>,
     /// Positions at the last structure build, for policies that ask.
     pub reference: Reference,
     pub surveyor: Surveyor,
-    pub morton: MortonOrder,
+    /// Made when a list is first asked for.
+    pub lister: Option<Lister>,
     pub timeline: Timeline,
     pub report: Report,
     pub record_history: bool,
@@ -32,7 +36,7 @@ pub(crate) struct Loaded {
     /// Step at which particles were last reordered.
     pub sorted_at: Option<u64>,
     /// Step at which the choice of cells was last made anew.
-    pub surveyed_at: Option<u64>,
+    pub planned_at: Option<u64>,
 }
 
 impl Loaded {
@@ -43,19 +47,20 @@ impl Loaded {
             plan: *plan,
             state: State::new(gpu, system)?,
             results: Results::new(gpu),
+            next_position: Buffer::new(gpu, "next positions"),
             totalizer: Totalizer::new(gpu, &system.interaction)?,
-            structure: Structure::new(gpu, plan)?,
+            structure: Structure::new(gpu, plan, &physics)?,
             policy: plan.maintenance.policy(),
             reference: Reference::new(gpu),
             surveyor: Surveyor::new(gpu),
-            morton: MortonOrder::new(gpu),
+            lister: None,
             timeline: Timeline::default(),
             report: Report::default(),
             record_history: false,
             built: false,
             forces_valid: false,
             sorted_at: None,
-            surveyed_at: None,
+            planned_at: None,
             physics,
         })
     }
@@ -73,11 +78,11 @@ impl Loaded {
     pub fn report(&self) -> Report {
         let bytes = self.state.bytes()
             + self.results.bytes()
+            + self.next_position.bytes()
             + self.physics.bytes()
             + self.totalizer.bytes()
             + self.structure.bytes()
-            + self.reference.bytes()
-            + self.morton.bytes();
+            + self.reference.bytes();
         Report { bytes, ..self.report.clone() }
     }
 }

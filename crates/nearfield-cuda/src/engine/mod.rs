@@ -3,6 +3,7 @@
 mod diagnose;
 mod evaluate;
 mod integrate;
+mod list;
 mod loaded;
 pub(crate) mod motion;
 mod order;
@@ -15,7 +16,7 @@ mod survey;
 mod timeline;
 mod totals;
 
-use crate::{CudaDevice, Gpu, Unavailable};
+use crate::{Buffer, CudaDevice, DeviceList, Gpu, Unavailable};
 use loaded::Loaded;
 use nearfield_core::{
     Dynamics, Engine, Error, ListRequest, NeighborList, Particles, PerParticle, Plan, Quantities, Report, Result,
@@ -44,6 +45,31 @@ impl CudaEngine {
         Self { gpu, loaded: None, record_history: false }
     }
 
+    /// Neighbours of all particles at the present positions, by input index, left on the device. Images are kept where
+    /// `request` asks for shifts or distances; rows are not sorted.
+    ///
+    /// # Errors
+    /// As [`Engine::neighbor_list`].
+    pub fn list_on_device(&mut self, request: ListRequest) -> Result<&DeviceList> {
+        self.loaded()?.list_on_device(request)
+    }
+
+    /// Number of neighbours of each particle at the present positions, by input index, left on the device.
+    ///
+    /// # Errors
+    /// As [`Engine::neighbor_list`].
+    pub fn count_on_device(&mut self) -> Result<&Buffer<u32>> {
+        self.loaded()?.count_on_device()
+    }
+
+    /// Waits for the device.
+    ///
+    /// # Errors
+    /// [`Error::Device`], of any work enqueued before.
+    pub fn synchronize(&self) -> Result<()> {
+        self.gpu.synchronize()
+    }
+
     fn loaded(&mut self) -> Result<&mut Loaded> {
         self.loaded.as_deref_mut().ok_or(Error::NotLoaded)
     }
@@ -61,7 +87,7 @@ impl Engine for CudaEngine {
                 reason: "it needs one radius for all particles; use cell, rt-list or rt-forces",
             });
         }
-        if plan.method != nearfield_core::Method::Brute || plan.method.uses_bvh() && self.gpu.ray_tracing().is_err() {
+        if plan.method.uses_bvh() && self.gpu.ray_tracing().is_err() {
             return Err(Error::Unsupported {
                 method: plan.method,
                 reason: "the driver offers no OptiX (see `nearfield devices`); use cell",
@@ -113,8 +139,7 @@ impl Engine for CudaEngine {
     }
 
     fn neighbor_list(&mut self, request: ListRequest) -> Result<NeighborList> {
-        let _ = request;
-        Err(Error::NotLoaded)
+        self.loaded()?.neighbor_list(request)
     }
 
     fn report(&self) -> Report {

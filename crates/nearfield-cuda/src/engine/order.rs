@@ -69,10 +69,4 @@ impl MortonOrder {
         }
         Ok(&self.order)
     }
-
-    /// Bytes held on the device.
-    pub fn bytes(&self) -> u64 {
-        let buffers = [&self.cell, &self.rank, &self.count, &self.start, &self.order];
-        buffers.iter().map(|buffer| buffer.bytes()).sum::<u64>() + self.scan.bytes()
-    }
 }

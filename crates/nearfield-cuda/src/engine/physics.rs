@@ -1,6 +1,7 @@
 //! Box and interaction as kernels take them.
 
-use crate::{Buffer, Gpu};
+use super::{state::State, survey::Sample};
+use crate::{Buffer, Gpu, grid::Survey, tracing::Scene};
 use nearfield_core::{Boundary, Interaction, Radii, Result, SimBox, System, Truncation, potentials::Potential};
 use nearfield_kernels::{
     Float4,
@@ -24,6 +25,8 @@ pub(crate) struct Physics {
     pub cutoff: Option<f32>,
     /// The largest radius.
     pub largest: f32,
+    /// The mean radius.
+    pub mean: f32,
     /// What roundings of coordinates in the box can take from a range.
     pub slack: f32,
     tables: Tables,
@@ -76,6 +79,7 @@ impl Physics {
             law,
             cutoff,
             largest: system.radii.largest(),
+            mean: mean(&system.radii),
             slack: 4.0 * f32::EPSILON * extent,
             tables,
         })
@@ -86,15 +90,44 @@ impl Physics {
         self.law.cap = if allow { OVERLAP_CAP } else { f32::INFINITY };
     }
 
-    /// Whether the fast kernel for one type of Lennard-Jones computes the forces.
-    pub fn is_plain_lennard_jones(&self) -> bool {
-        let shifted = self.interaction.truncation == Truncation::Force;
-        matches!(self.interaction.potential, Potential::LennardJones(_)) && self.law.n_types == 1 && !shifted
+    /// What cells depend on.
+    pub fn survey<'a>(&'a self, sample: &'a Sample) -> Survey<'a> {
+        Survey {
+            n: sample.n,
+            sample: &sample.positions,
+            sim_box: &self.sim_box,
+            cutoff: self.cutoff,
+            largest: self.largest,
+        }
+    }
+
+    /// What rays depend on, at the places of `state`.
+    pub fn scene<'a>(&'a self, state: &'a State) -> Scene<'a> {
+        Scene {
+            gpu: state.gpu(),
+            sim_box: &self.sim_box,
+            space: self.space,
+            law: self.law,
+            particles: state.particles(),
+            largest: self.largest,
+            mean: self.mean,
+            skin: 0.0,
+            slack: self.slack,
+        }
     }
 
     /// Bytes held on the device.
     pub fn bytes(&self) -> u64 {
         self.tables.pairs.bytes() + self.tables.energy.bytes() + self.tables.force.bytes()
+    }
+}
+
+fn mean(radii: &Radii) -> f32 {
+    match radii {
+        Radii::Uniform(cutoff) => *cutoff,
+        Radii::PerParticle(radii) => {
+            (radii.iter().map(|&r| f64::from(r)).sum::<f64>() / radii.len().max(1) as f64) as f32
+        }
     }
 }
 

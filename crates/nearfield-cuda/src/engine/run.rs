@@ -4,7 +4,7 @@ use super::{
     integrate::{Half, Integrator},
     loaded::Loaded,
 };
-use nearfield_core::{Dynamics, Error, Quantities, Result, Totals};
+use nearfield_core::{Dynamics, Error, Method, Quantities, Result, Totals};
 
 impl Loaded {
     /// See [`nearfield_core::Engine::advance`].
@@ -20,10 +20,15 @@ impl Loaded {
             let integrator = Integrator::new(&self.gpu, &self.physics, dynamics, self.state.len(), from + 1..last + 1)?;
             self.forces_valid = false;
             self.move_all(&integrator, Half::Start, from)?;
+            let fused = self.plan.method == Method::RtPerse && !integrator.rescales();
             for step in from + 1..=last {
                 let wanted = if step == last { quantities } else { Quantities::FORCES };
-                self.evaluate(wanted, step)?;
-                self.finish_step(&integrator, step - from - 1, step, step == last)?;
+                if fused && step < last {
+                    self.evaluate_and_move(&integrator, step)?;
+                } else {
+                    self.evaluate(wanted, step)?;
+                    self.finish_step(&integrator, step - from - 1, step, step == last)?;
+                }
             }
             self.forces_valid = true;
         }

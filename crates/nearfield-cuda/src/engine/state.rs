@@ -89,6 +89,10 @@ impl State {
         self.id.len()
     }
 
+    pub fn gpu(&self) -> &Arc<dyn Gpu> {
+        &self.gpu
+    }
+
     /// Addresses for kernels.
     pub fn particles(&self) -> layouts::Particles {
         layouts::Particles {

@@ -1,20 +1,14 @@
 //! The structure of a method, and its query.
 
-use super::{physics::Physics, results::Results, state::State, survey::Survey};
-use crate::{Gpu, gpu::launch};
-use nearfield_core::{Method, Plan, Report, Result, maintenance::Action};
-use nearfield_kernels::{
-    Kernel, Ptr,
-    kernels::{self, ForceKernels},
-    layouts::{self, GatherArgs},
+use super::{physics::Physics, results::Results, state::State, survey::Sample};
+use crate::{
+    Gpu,
+    grid::{self, Candidates, ForceQuery, Grid},
+    tracing::{Bvh, Outcome, Scene, Step, StoredList, Sums, Updated},
 };
+use nearfield_core::{Method, Plan, Report, Result, maintenance::Action};
+use nearfield_kernels::layouts;
 use std::sync::Arc;
-
-/// Particles that a warp of the force kernels takes.
-const CLUSTER: u64 = 8;
-
-/// Lanes of a warp.
-const WARP: u64 = 32;
 
 /// What a query needs.
 pub(crate) struct Query<'a> {
@@ -26,91 +20,148 @@ pub(crate) struct Query<'a> {
     pub report: &'a mut Report,
 }
 
-/// What an update did.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Updated {
-    /// Built rather than refitted.
-    pub built: bool,
-    /// Built although a refit was asked for.
-    pub forced: bool,
-}
-
-/// One structure.
+/// How candidates are found.
 pub(crate) enum Structure {
+    /// All pairs.
     Brute,
+    /// Cells.
+    Cells(Box<Grid>),
+    /// Boxes, traced for forces.
+    Boxes(Bvh),
+    /// Boxes, traced for a list.
+    List(Bvh, StoredList),
 }
 
 impl Structure {
-    pub fn new(_gpu: &Arc<dyn Gpu>, plan: &Plan) -> Result<Self> {
-        match plan.method {
-            Method::Brute => Ok(Self::Brute),
-            _ => Ok(Self::Brute),
+    pub fn new(gpu: &Arc<dyn Gpu>, plan: &Plan, physics: &Physics) -> Result<Self> {
+        Ok(match plan.method {
+            Method::Brute => Self::Brute,
+            Method::Cell => Self::Cells(Box::new(Grid::new(gpu))),
+            Method::RtForces | Method::RtPerse | Method::RtBoxes => Self::Boxes(Bvh::new(gpu, plan.images)?),
+            Method::RtList => {
+                Self::List(Bvh::new(gpu, plan.images)?, StoredList::new(gpu, plan, &physics.sim_box, physics.largest))
+            }
+        })
+    }
+
+    /// Whether what the last update made still serves at the present positions. To be asked once an evaluation.
+    pub fn is_fresh(&mut self, scene: &Scene) -> Result<bool> {
+        match self {
+            Self::List(_, list) => list.is_fresh(scene),
+            _ => Ok(false),
         }
     }
 
-    /// Whether what the last update made still serves at the present positions.
-    pub fn is_fresh(&mut self, _state: &State, _physics: &Physics) -> Result<bool> {
-        Ok(false)
-    }
-
     /// Whether [`Structure::plan`] is to be called now and then.
-    pub fn needs_survey(&self) -> bool {
-        false
+    pub fn needs_plan(&self) -> bool {
+        matches!(self, Self::Cells(_))
     }
 
     /// Makes choices that depend on how the particles lie.
-    pub fn plan(&mut self, _survey: &Survey, _physics: &Physics) -> Result<()> {
-        Ok(())
+    pub fn plan(&mut self, sample: &Sample, physics: &Physics) {
+        if let Self::Cells(grid) = self {
+            grid.plan(&physics.survey(sample));
+        }
     }
 
     /// Builds or refits.
-    pub fn update(&mut self, _action: Action, _state: &State, _physics: &Physics) -> Result<Updated> {
-        Ok(Updated { built: true, forced: false })
-    }
-
-    pub fn cell_order(
-        &mut self,
-        _gpu: &Arc<dyn Gpu>,
-        _survey: &Survey,
-        _state: &State,
-        _physics: &Physics,
-    ) -> Result<Ptr<u32>> {
-        Ok(Ptr::NULL)
+    pub fn update(&mut self, action: Action, scene: &Scene) -> Result<Updated> {
+        match self {
+            Self::Brute => Ok(Updated { built: true, forced: false }),
+            Self::Cells(grid) => {
+                let particles = scene.particles;
+                // SAFETY: the scene's positions are n.
+                unsafe { grid.build(particles.position, particles.n as usize, scene.law.variable != 0)? };
+                Ok(Updated { built: true, forced: false })
+            }
+            Self::Boxes(bvh) => bvh.update(action, scene),
+            Self::List(bvh, list) => {
+                list.invalidate();
+                bvh.update(action, &Scene { skin: list.skin(), ..*scene })
+            }
+        }
     }
 
     /// Enqueues the forces.
-    pub fn evaluate(&mut self, gpu: &Arc<dyn Gpu>, query: Query) -> Result<()> {
-        let kernel = force_kernel(&kernels::BRUTE_FORCES, &query);
-        let Query { physics, state, results, .. } = query;
-        let n = state.len();
-        let arguments = GatherArgs {
-            law: physics.law,
-            space: physics.space,
-            grid: layouts::Grid { slot: state.moving.position.ptr(), ..layouts::Grid::default() },
-            velocity: state.moving.velocity.ptr(),
-            results: results.layout(),
-            n: n as u32,
-            slack: physics.slack,
-        };
-        // SAFETY: the arrays of particles and results have n elements each.
-        unsafe { launch(&**gpu, kernel, (n as u64).div_ceil(CLUSTER) * WARP, &arguments) }
+    pub fn evaluate(&mut self, query: Query, scene: &Scene) -> Result<()> {
+        let Query { plan, physics, state, results, energy, report } = query;
+        match self {
+            Self::Brute => {
+                let candidates = Candidates::All { position: scene.particles.position, n: state.len() };
+                by_candidates(candidates, plan, physics, state, results, energy)
+            }
+            Self::Cells(grid) => by_candidates(Candidates::Cells(grid), plan, physics, state, results, energy),
+            Self::Boxes(bvh) if plan.method == Method::RtForces => {
+                scatter(bvh, Sums { exact: plan.deterministic, energy }, results, scene)
+            }
+            Self::Boxes(bvh) => bvh.gather(scene, Sums { exact: plan.deterministic, energy }, results.layout()),
+            Self::List(bvh, list) => {
+                let sums = Sums { exact: plan.deterministic, energy };
+                let mut outcome = list.gather(bvh, scene, sums, results.layout(), plan.memory_budget, report)?;
+                if outcome == Outcome::NeedsBuildWithoutSkin {
+                    bvh.update(Action::Build, scene)?;
+                    report.builds += 1;
+                    outcome = list.gather(bvh, scene, sums, results.layout(), plan.memory_budget, report)?;
+                }
+                if outcome == Outcome::NeedsScatter { scatter(bvh, sums, results, scene) } else { Ok(()) }
+            }
+        }
+    }
+
+    /// Enqueues the forces and a step of all particles.
+    ///
+    /// # Panics
+    /// Where boxes are not traced for forces.
+    pub fn advance(&self, plan: &Plan, scene: &Scene, results: layouts::Results, step: &Step) -> Result<()> {
+        let Self::Boxes(bvh) = self else { unreachable!("{} does not trace boxes for forces", plan.method) };
+        bvh.advance(scene, plan.deterministic, results, step)
     }
 
     /// Bytes held on the device.
     pub fn bytes(&self) -> u64 {
-        0
+        match self {
+            Self::Brute => 0,
+            Self::Cells(grid) => grid.bytes(),
+            Self::Boxes(bvh) => bvh.bytes(),
+            Self::List(bvh, list) => bvh.bytes() + list.bytes(),
+        }
     }
 }
 
-/// The fastest kernel that computes what is asked for.
-fn force_kernel(kernels: &ForceKernels, query: &Query) -> Kernel<GatherArgs> {
-    let plain = query.physics.is_plain_lennard_jones();
-    match (query.plan.deterministic, query.energy) {
-        (true, false) => kernels.exact,
-        (true, true) => kernels.exact_energy,
-        (false, true) => kernels.any_energy,
-        (false, false) if plain && query.physics.cutoff.is_some() => kernels.uniform,
-        (false, false) if plain => kernels.scaled,
-        (false, false) => kernels.any,
+/// Forces by a warp for each few particles.
+fn by_candidates(
+    candidates: Candidates,
+    plan: &Plan,
+    physics: &Physics,
+    state: &State,
+    results: &mut Results,
+    energy: bool,
+) -> Result<()> {
+    let (gpu, scatters) = (state.gpu(), candidates.scatters());
+    if scatters {
+        results.zero(plan.deterministic)?;
     }
+    let query = ForceQuery {
+        law: physics.law,
+        space: physics.space,
+        velocity: state.moving.velocity.ptr(),
+        results: results.layout(),
+        energy,
+        exact: plan.deterministic,
+    };
+    // SAFETY: the arrays of particles and results have n elements each.
+    unsafe { grid::forces(&**gpu, candidates, &query)? };
+    if scatters && plan.deterministic {
+        results.finish_exact(&**gpu, &physics.law)?;
+    }
+    Ok(())
+}
+
+fn scatter(bvh: &Bvh, sums: Sums, results: &mut Results, scene: &Scene) -> Result<()> {
+    results.zero(sums.exact)?;
+    bvh.scatter(scene, sums, results.layout())?;
+    if sums.exact {
+        results.finish_exact(&**scene.gpu, &scene.law)?;
+    }
+    Ok(())
 }

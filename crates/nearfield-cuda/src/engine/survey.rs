@@ -24,12 +24,13 @@ pub(crate) struct Bounds {
 
 /// What is known of the particles' places.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Survey {
+pub(crate) struct Sample {
     /// Number of particles.
     pub n: usize,
+    /// Of all of them.
     pub bounds: Bounds,
     /// Positions, with radii in w, at even strides through memory.
-    pub sample: Vec<Float4>,
+    pub positions: Vec<Float4>,
 }
 
 /// Buffers of surveys.
@@ -45,10 +46,10 @@ impl Surveyor {
     }
 
     /// Looks at the present positions; waits for the device.
-    pub fn survey(&mut self, state: &State) -> Result<Survey> {
+    pub fn survey(&mut self, state: &State) -> Result<Sample> {
         let n = state.len();
         if n == 0 {
-            return Ok(Survey::default());
+            return Ok(Sample::default());
         }
         self.bounds.upload(&[u32::MAX, u32::MAX, u32::MAX, 0, 0, 0])?;
         self.sample.resize(n.min(SAMPLE))?;
@@ -64,7 +65,7 @@ impl Surveyor {
         }
         let corners = self.bounds.download()?;
         let corner = |first: usize| [0, 1, 2].map(|axis| from_ordered_bits(corners[first + axis]));
-        Ok(Survey { n, bounds: Bounds { lo: corner(0), hi: corner(3) }, sample: self.sample.download()? })
+        Ok(Sample { n, bounds: Bounds { lo: corner(0), hi: corner(3) }, positions: self.sample.download()? })
     }
 }
 

@@ -7,7 +7,7 @@ mod query;
 mod width;
 
 pub use plan::{CellPlan, Survey};
-pub use query::{Candidates, DeviceList, ForceQuery, ListQuery, forces};
+pub use query::{Candidates, ForceQuery, ListQuery, count, forces, list};
 
 use crate::{Buffer, Gpu, gpu::launch, scan::Scan};
 use nearfield_core::Result;

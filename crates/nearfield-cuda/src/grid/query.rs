@@ -1,14 +1,13 @@
 //! Forces and neighbour lists, by cells or by testing all pairs.
 
 use super::Grid;
-use crate::{Buffer, Gpu, gpu::launch, scan::Scan};
+use crate::{DeviceList, Gpu, gpu::launch};
 use nearfield_core::{ListKind, Result};
 use nearfield_kernels::{
     Float4, Ptr,
-    kernels::{self, CELL_FORCES, CLUSTER},
+    kernels::{self, CELL_FORCES, CLUSTER, ListKernels},
     layouts::{self, Box3, GatherArgs, Law, ListArgs, Results},
 };
-use std::sync::Arc;
 
 /// Where candidates come from.
 #[derive(Clone, Copy)]
@@ -116,74 +115,60 @@ pub struct ListQuery {
     pub images: bool,
 }
 
-/// Neighbour lists on the device, by input index.
-pub struct DeviceList {
-    gpu: Arc<dyn Gpu>,
-    count: Buffer<u32>,
-    /// Row starts, `[n + 1]`.
-    pub offset: Buffer<u64>,
-    /// Neighbours, in no particular order within a row.
-    pub index: Buffer<u32>,
-    /// Periodic images, 13 being home; empty unless asked for.
-    pub image: Buffer<u8>,
-    scan: Scan,
+/// Counts the neighbours of all particles, by input index.
+///
+/// # Safety
+/// Addresses in `query` and `candidates` are of as many particles as `candidates` has; input indices are below that,
+/// each once.
+///
+/// # Errors
+/// As [`Gpu::allocate`] and [`Gpu::launch`].
+pub unsafe fn count(gpu: &dyn Gpu, candidates: Candidates, query: &ListQuery, list: &mut DeviceList) -> Result<()> {
+    list.start(candidates.n())?;
+    let kernel = list_kernels(candidates, query).count;
+    // SAFETY: the caller's promise, and a count for each row.
+    unsafe { launch(gpu, kernel, candidates.threads(), &arguments(candidates, query, list)) }
 }
 
-impl DeviceList {
-    /// Without rows yet.
-    pub fn new(gpu: &Arc<dyn Gpu>) -> Self {
-        Self {
-            gpu: gpu.clone(),
-            count: Buffer::new(gpu, "neighbour counts"),
-            offset: Buffer::new(gpu, "rows of the neighbour list"),
-            index: Buffer::new(gpu, "the neighbour list"),
-            image: Buffer::new(gpu, "images of the neighbour list"),
-            scan: Scan::new(gpu),
-        }
-    }
+/// Lists the neighbours of all particles, by input index; waits for the device once, to know how many there are.
+///
+/// # Safety
+/// As [`count`].
+///
+/// # Errors
+/// As [`count`].
+pub unsafe fn list(gpu: &dyn Gpu, candidates: Candidates, query: &ListQuery, list: &mut DeviceList) -> Result<()> {
+    // SAFETY: the caller's promise.
+    unsafe { count(gpu, candidates, query, list)? };
+    let entries = list.place_rows()?;
+    list.make_room(entries, query.images)?;
+    let kernel = list_kernels(candidates, query).fill;
+    // SAFETY: the same pairs are found again, for which there is room.
+    unsafe { launch(gpu, kernel, candidates.threads(), &arguments(candidates, query, list)) }
+}
 
-    /// Lists all neighbours; waits for the device once, to know how many there are.
-    ///
-    /// # Safety
-    /// Addresses in `query` and `candidates` are of as many particles as `candidates` has; input indices are below
-    /// that, each once.
-    ///
-    /// # Errors
-    /// As [`Gpu::allocate`] and [`Gpu::launch`].
-    pub unsafe fn fill(&mut self, candidates: Candidates, query: &ListQuery) -> Result<()> {
-        let n = candidates.n();
-        let kernels = match (candidates, query.law.variable != 0) {
-            (Candidates::Cells(_), false) => kernels::CELL_LIST,
-            (Candidates::Cells(_), true) => kernels::CELL_LIST_RADII,
-            (Candidates::All { .. }, false) => kernels::BRUTE_LIST,
-            (Candidates::All { .. }, true) => kernels::BRUTE_LIST_RADII,
-        };
-        self.count.resize(n)?;
-        self.count.zero()?;
-        let mut arguments = ListArgs {
-            law: query.law,
-            space: query.space,
-            grid: candidates.layout(),
-            id: query.id,
-            count: self.count.ptr(),
-            n: n as u32,
-            half: u32::from(query.kind == ListKind::Half),
-            slack: candidates.slack(),
-            ..Default::default()
-        };
-        // SAFETY: the caller's promise, and a count for each row.
-        unsafe { launch(&*self.gpu, kernels.count, candidates.threads(), &arguments)? };
-        self.scan.run_wide(&self.count, &mut self.offset)?;
-        let entries = self.offset.download_range(n, 1)?[0] as usize;
-        self.index.resize_with_room(entries)?;
-        self.image.resize_with_room(if query.images { entries } else { 0 })?;
-        (arguments.offset, arguments.index, arguments.image) = (self.offset.ptr(), self.index.ptr(), self.image.ptr());
-        // SAFETY: the same pairs are found again, for which there is room.
-        unsafe { launch(&*self.gpu, kernels.fill, candidates.threads(), &arguments) }
+fn list_kernels(candidates: Candidates, query: &ListQuery) -> ListKernels {
+    match (candidates, query.law.variable != 0) {
+        (Candidates::Cells(_), false) => kernels::CELL_LIST,
+        (Candidates::Cells(_), true) => kernels::CELL_LIST_RADII,
+        (Candidates::All { .. }, false) => kernels::BRUTE_LIST,
+        (Candidates::All { .. }, true) => kernels::BRUTE_LIST_RADII,
     }
+}
 
-    /// Bytes held on the device.
-    pub fn bytes(&self) -> u64 {
-        self.count.bytes() + self.offset.bytes() + self.index.bytes() + self.image.bytes() + self.scan.bytes()
+fn arguments(candidates: Candidates, query: &ListQuery, list: &DeviceList) -> ListArgs {
+    ListArgs {
+        law: query.law,
+        space: query.space,
+        grid: candidates.layout(),
+        id: query.id,
+        count: list.count.ptr(),
+        offset: list.offset.ptr(),
+        index: list.index.ptr(),
+        image: list.image.ptr(),
+        n: candidates.n() as u32,
+        half: u32::from(query.kind == ListKind::Half),
+        slack: candidates.slack(),
+        unused: 0,
     }
 }

@@ -95,7 +95,10 @@ impl Bvh {
             arguments = ghosts.arguments(&arguments);
         }
         let n = u64::from(arguments.n) + u64::from(arguments.n_ghosts);
-        self.boxes.resize_with_room(n as usize)?;
+        match self.ghosts {
+            Some(_) => self.boxes.resize_with_room(n as usize)?,
+            None => self.boxes.resize(n as usize)?,
+        }
         arguments.boxes = Ptr::new(self.boxes.ptr().address());
         // SAFETY: there is a box for each particle and ghost, and a position for each particle.
         unsafe { launch(&*self.gpu, kernels::FIT_BOXES, n, &arguments)? };

@@ -14,6 +14,6 @@ mod view;
 
 pub use bvh::Bvh;
 pub use query::Step;
-pub use rows::{ListBuffers, RowNumbers};
+pub use rows::{RowNumbers, RowQuery};
 pub use scene::{Scene, Sums, Updated};
 pub use stored_list::{Outcome, StoredList};

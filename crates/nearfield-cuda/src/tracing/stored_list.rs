@@ -6,15 +6,18 @@
 
 use super::{
     Bvh, Scene, Sums,
-    rows::{ListBuffers, RowNumbers},
+    rows::{RowNumbers, RowQuery},
 };
-use crate::{Gpu, engine::motion::Reference, gpu::launch};
+use crate::{DeviceList, Gpu, engine::motion::Reference, gpu::launch};
 use nearfield_core::{ListKind, Plan, Report, Result, SimBox};
 use nearfield_kernels::{
     kernels,
     layouts::{Results, RowsArgs},
 };
 use std::{ops::Range, sync::Arc};
+
+/// Rows of this list.
+const ROWS: RowQuery = RowQuery { kind: ListKind::Full, numbers: RowNumbers::Place };
 
 const BYTES_PER_ENTRY: u64 = size_of::<u32>() as u64;
 
@@ -24,7 +27,7 @@ pub struct StoredList {
     /// At most what keeps range plus skin within half a periodic length; zero once the list has proved too large.
     skin: f32,
     valid: bool,
-    rows: ListBuffers,
+    rows: DeviceList,
     reference: Reference,
     /// Evaluations since the list was built.
     age: u64,
@@ -55,7 +58,7 @@ impl StoredList {
             gpu: gpu.clone(),
             skin: plan.skin.min(room).max(0.0),
             valid: false,
-            rows: ListBuffers::new(gpu),
+            rows: DeviceList::new(gpu),
             reference: Reference::new(gpu),
             age: 0,
         }
@@ -103,7 +106,8 @@ impl StoredList {
         let scene = &Scene { skin: self.skin, ..*scene };
         let n = scene.particles.n;
         if !self.valid {
-            let entries = self.rows.count(bvh, scene, ListKind::Full, RowNumbers::Place)?;
+            bvh.count(scene, ROWS, &mut self.rows)?;
+            let entries = self.rows.place_rows()?;
             if entries.saturating_mul(BYTES_PER_ENTRY) > budget {
                 if self.skin > 0.0 {
                     self.skin = 0.0;
@@ -122,8 +126,8 @@ impl StoredList {
             }
             self.age = 0;
             self.reference.set(&scene.particles)?;
-            self.rows.index.resize_with_room(entries as usize)?;
-            self.rows.fill(bvh, scene, ListKind::Full, RowNumbers::Place, 0..n, 0)?;
+            self.rows.make_room(entries, false)?;
+            bvh.fill(scene, ROWS, 0..n, 0, &self.rows)?;
             self.valid = true;
         }
         self.sum_rows(scene, sums, results, 0..n, 0)?;
@@ -137,7 +141,7 @@ impl StoredList {
         while first < n {
             let (end, stop) = self.rows_until(first, n, base + budget / BYTES_PER_ENTRY)?;
             self.rows.index.resize((stop - base) as usize)?;
-            self.rows.fill(bvh, scene, ListKind::Full, RowNumbers::Place, first..end, base)?;
+            bvh.fill(scene, ROWS, first..end, base, &self.rows)?;
             self.sum_rows(scene, sums, results, first..end, base)?;
             (first, base) = (end, stop);
         }
@@ -147,10 +151,10 @@ impl StoredList {
     /// The row after the last that ends at or before entry `limit`, and its start; at least the row after `first`.
     fn rows_until(&self, first: u32, n: u32, limit: u64) -> Result<(u32, u64)> {
         let (mut low, mut high) = (first + 1, n);
-        let mut start = self.rows.start_of(low)?;
+        let mut start = self.rows.start_of(low as usize)?;
         while low < high {
             let middle = low + (high - low).div_ceil(2);
-            let start_of_middle = self.rows.start_of(middle)?;
+            let start_of_middle = self.rows.start_of(middle as usize)?;
             if start_of_middle <= limit {
                 (low, start) = (middle, start_of_middle);
             } else {

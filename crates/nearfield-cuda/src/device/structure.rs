@@ -1,0 +1,116 @@
+//! Acceleration structures of OptiX in buffers that are kept and grown.
+
+use super::{CudaDevice, optix::failed};
+use crate::{
+    Buffer, Gpu,
+    gpu::{Aabb, AccelerationStructure},
+};
+use nearfield_core::Result;
+use nearfield_kernels::Ptr;
+use optix_driver::{
+    Aabbs, AccelOptions, AnyHit, BuildInput, DeviceContext, DeviceSpan, Instance, Instances, Preference,
+    TraversableHandle,
+};
+use std::sync::Arc;
+
+/// A structure is traced far more often than it is built, and refitted in between.
+const OPTIONS: AccelOptions =
+    AccelOptions { allow_update: true, allow_compaction: false, preference: Preference::FastTrace };
+
+/// A structure over boxes or instances.
+pub(super) struct OptixStructure {
+    context: Arc<DeviceContext>,
+    device: Arc<CudaDevice>,
+    handle: u64,
+    output: Buffer<u8>,
+    scratch: Buffer<u8>,
+    /// Records of the instances, where it is over instances, on the host and on the device.
+    instances: Vec<Instance>,
+    records: Buffer<u8>,
+}
+
+impl OptixStructure {
+    pub fn new(context: &Arc<DeviceContext>, device: &Arc<CudaDevice>) -> Self {
+        let gpu: Arc<dyn Gpu> = device.clone();
+        Self {
+            context: context.clone(),
+            device: device.clone(),
+            handle: 0,
+            output: Buffer::new(&gpu, "an acceleration structure"),
+            scratch: Buffer::new(&gpu, "scratch of an acceleration structure"),
+            instances: Vec::new(),
+            records: Buffer::new(&gpu, "instances of an acceleration structure"),
+        }
+    }
+
+    /// # Safety
+    /// What `input` points to is valid until the work is done.
+    unsafe fn build(&mut self, input: BuildInput) -> Result<()> {
+        let stream = self.device.bind()?;
+        let building = |error| failed("building an acceleration structure", error);
+        let sizes = self.context.accel_sizes(OPTIONS, &[input]).map_err(building)?;
+        self.output.resize(sizes.output)?;
+        self.scratch.resize(sizes.temp.max(sizes.temp_update))?;
+        let (scratch, output) = (span(&self.scratch), span(&self.output));
+        // SAFETY: the buffers are as large as was asked for, aligned to 256 bytes and kept while the handle is; the
+        // caller vouches for the input; the stream is the device's and captures nothing.
+        let handle = unsafe { self.context.accel_build(stream.cast(), OPTIONS, &[input], scratch, output, None) };
+        self.handle = handle.map_err(building)?.0;
+        Ok(())
+    }
+
+    /// # Safety
+    /// As [`OptixStructure::build`]; the last build had an input of this kind and size.
+    unsafe fn update(&mut self, input: BuildInput) -> Result<()> {
+        let stream = self.device.bind()?;
+        let (scratch, output) = (span(&self.scratch), span(&self.output));
+        // SAFETY: as in `build`, which made room for updates too.
+        let handle = unsafe { self.context.accel_update(stream.cast(), OPTIONS, &[input], scratch, output) };
+        self.handle = handle.map_err(|error| failed("refitting an acceleration structure", error))?.0;
+        Ok(())
+    }
+}
+
+impl AccelerationStructure for OptixStructure {
+    unsafe fn build_boxes(&mut self, boxes: Ptr<Aabb>, n: u32) -> Result<()> {
+        // SAFETY: the caller vouches for the boxes.
+        unsafe { self.build(around(boxes, n)) }
+    }
+
+    unsafe fn refit_boxes(&mut self, boxes: Ptr<Aabb>, n: u32) -> Result<()> {
+        // SAFETY: the caller vouches for the boxes, and for their number.
+        unsafe { self.update(around(boxes, n)) }
+    }
+
+    fn build_instances(&mut self, of: &dyn AccelerationStructure, translations: &[[f32; 3]]) -> Result<()> {
+        let of = TraversableHandle(of.handle());
+        let instances: Vec<_> =
+            (0..).zip(translations).map(|(id, &shift)| Instance::translated(of, id, shift)).collect();
+        let unchanged = instances == self.instances && self.handle != 0;
+        if !unchanged {
+            self.records.upload(Instance::bytes(&instances))?;
+            self.instances = instances;
+        }
+        let count = self.instances.len() as u32;
+        let input = BuildInput::Instances(Instances { buffer: self.records.ptr().address(), count });
+        // SAFETY: the records are this structure's own; their number is that of the last build where they are the same.
+        unsafe { if unchanged { self.update(input) } else { self.build(input) } }
+    }
+
+    fn handle(&self) -> u64 {
+        self.handle
+    }
+
+    fn bytes(&self) -> u64 {
+        self.output.bytes() + self.scratch.bytes() + self.records.bytes()
+    }
+}
+
+fn around(boxes: Ptr<Aabb>, n: u32) -> BuildInput {
+    let stride = size_of::<Aabb>() as u32;
+    BuildInput::Aabbs(Aabbs { buffer: boxes.address(), count: n, stride, any_hit: AnyHit::Never })
+}
+
+fn span(buffer: &Buffer<u8>) -> DeviceSpan {
+    DeviceSpan { address: buffer.ptr().address(), bytes: buffer.len() }
+}

@@ -1,0 +1,59 @@
+//! Neighbour lists in device memory: counted, scanned, filled.
+
+use crate::{Buffer, Gpu, scan::Scan};
+use nearfield_core::Result;
+use std::sync::Arc;
+
+/// A neighbour list on the device in compressed sparse rows.
+pub struct DeviceList {
+    scan: Scan,
+    /// Entries of each row, which kernels count and, where several write a row, count down again as they fill it.
+    pub(crate) count: Buffer<u32>,
+    /// Row starts, `[n + 1]`.
+    pub offset: Buffer<u64>,
+    /// Neighbours, in no particular order within a row.
+    pub index: Buffer<u32>,
+    /// Periodic image of each neighbour, `(x + 1) + 3 (y + 1) + 9 (z + 1)` box lengths away; empty unless asked for.
+    pub image: Buffer<u8>,
+}
+
+impl DeviceList {
+    /// Without rows yet.
+    pub fn new(gpu: &Arc<dyn Gpu>) -> Self {
+        Self {
+            scan: Scan::new(gpu),
+            count: Buffer::new(gpu, "neighbour counts"),
+            offset: Buffer::new(gpu, "row starts"),
+            index: Buffer::new(gpu, "the neighbour list"),
+            image: Buffer::new(gpu, "images of the neighbour list"),
+        }
+    }
+
+    /// Zeroes the counts of `n` rows.
+    pub(crate) fn start(&mut self, n: usize) -> Result<()> {
+        self.count.resize(n)?;
+        self.count.zero()
+    }
+
+    /// Sums the counts into row starts and gives the number of entries; waits for the device.
+    pub(crate) fn place_rows(&mut self) -> Result<u64> {
+        self.scan.run_wide(&self.count, &mut self.offset)?;
+        self.start_of(self.count.len())
+    }
+
+    /// Makes room for entries.
+    pub(crate) fn make_room(&mut self, entries: u64, images: bool) -> Result<()> {
+        self.index.resize_with_room(entries as usize)?;
+        self.image.resize_with_room(if images { entries as usize } else { 0 })
+    }
+
+    /// Where a row starts; waits for the device.
+    pub(crate) fn start_of(&self, row: usize) -> Result<u64> {
+        Ok(self.offset.download_range(row, 1)?[0])
+    }
+
+    /// Bytes held on the device.
+    pub fn bytes(&self) -> u64 {
+        self.scan.bytes() + self.count.bytes() + self.offset.bytes() + self.index.bytes() + self.image.bytes()
+    }
+}
