@@ -47,7 +47,7 @@ extern __thread Ray ray;
 
 namespace rt {
 
-const int PAYLOAD_WORDS = 20;
+const int PAYLOAD_WORDS = 16;
 
 inline unsigned ray_index() { return blockIdx.x * blockDim.x + threadIdx.x; }
 inline unsigned primitive_index() { return emulator::ray.primitive; }
@@ -61,8 +61,11 @@ template <unsigned I> void set_payload(unsigned value) {
     emulator::ray.payload[I] = value;
 }
 
-inline void trace(unsigned long long handle, float x, float y, float z, unsigned (&p)[PAYLOAD_WORDS]) {
-    emulator::ray.payload = p;
+template <int WORDS> void trace(unsigned long long handle, float x, float y, float z, unsigned (&p)[WORDS]) {
+    static_assert(WORDS <= PAYLOAD_WORDS, "pipelines are made for so many");
+    unsigned words[PAYLOAD_WORDS] = {};
+    memcpy(words, p, sizeof(p));
+    emulator::ray.payload = words;
     const char* error =
         emulator::ray.traverse(emulator::ray.scene, handle, x, y, z, [](unsigned primitive, unsigned instance) {
             emulator::ray.primitive = primitive;
@@ -70,6 +73,7 @@ inline void trace(unsigned long long handle, float x, float y, float z, unsigned
             emulator::ray.intersection(nullptr);
         });
     if (error) emulator::machine().fail("ray %u: %s", ray_index(), error);
+    memcpy(p, words, sizeof(p));
 }
 
 } // namespace rt

@@ -18,7 +18,7 @@ __device__ inline void put(u64 at, u32 index, u32 image) {
 
 template <bool FILL> __device__ inline void list_rays() {
     const u32 i = params.rays.first + rt::ray_index();
-    u32 payload[rt::PAYLOAD_WORDS] = {};
+    u32 payload[PAYLOAD_CONSUMER + 1] = {};
     send_rays(params.rays, i, payload);
     if (!FILL && !params.rays.law.variable) params.count[number_of(i)] = payload[PAYLOAD_CONSUMER];
 }

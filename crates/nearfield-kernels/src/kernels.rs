@@ -117,8 +117,8 @@ pub const ROWS: ByForce<Kernel<RowsArgs>> = ByForce {
 /// Threads that share a row of [`ROWS`].
 pub const ROWS_LANES: u64 = 8;
 
-/// Words that rays carry, as in `raytracing.cuh`.
-pub const PAYLOAD_WORDS: u32 = 20;
+/// Most words that a ray carries, as in `raytracing.cuh`.
+pub const PAYLOAD_WORDS: u32 = 16;
 
 const fn program<A: crate::Layout>(module: &'static str, name: &'static str) -> RayProgram<A> {
     RayProgram::new(module, name, name)

@@ -23,7 +23,7 @@ __device__ inline u32 reach(float x, float near_lo, float near_hi) {
 }
 
 // Sends the rays of a particle. Gamma rays (paper A, section 3.3) start where the particle is seen from the image.
-__device__ inline void send_rays(const Rays& rays, u32 i, u32 (&payload)[rt::PAYLOAD_WORDS]) {
+template <int WORDS> __device__ inline void send_rays(const Rays& rays, u32 i, u32 (&payload)[WORDS]) {
     const float4 x = rays.particles.position[i];
     payload[PAYLOAD_POSITION] = __float_as_uint(x.x);
     payload[PAYLOAD_POSITION + 1] = __float_as_uint(x.y);
@@ -75,7 +75,9 @@ __device__ inline Meeting meet(const Rays& rays) {
                        __uint_as_float(rt::payload<PAYLOAD_POSITION + 2>()),
                        __uint_as_float(rt::payload<PAYLOAD_POSITION + 3>()));
     m.xj = rays.particles.position[m.j];
-    m.d = displacement(m.xi, m.xj, shift_of(rays.space, m.image));
+    // Most pairs are seen in the box itself.
+    const Shift s = m.image == HOME_IMAGE ? Shift{0.0f, 0.0f, 0.0f} : shift_of(rays.space, m.image);
+    m.d = displacement(m.xi, m.xj, s);
     m.r2 = squared_length(m.d.x, m.d.y, m.d.z);
     m.range = (rays.law.variable ? fmaxf(m.xi.w, m.xj.w) : rays.law.cutoff) + rays.skin;
     m.near = m.r2 < m.range * m.range && !(m.j == m.i && m.image == HOME_IMAGE);
