@@ -172,8 +172,8 @@ template <class V> __device__ inline void walk_rows(const Scratch& scratch, u32 
     }
 }
 
-// The same, but only those within their own radius or `v.radius` of the box are met. Those that do not fill a chunk wait
-// in the queue until `finish`.
+// The same, but only those within their own radius or `v.radius` of the box are met. Those that do not fill a chunk
+// wait in the queue until `finish`.
 template <class V>
 __device__ inline void walk_rows_within(Scratch& scratch, Pending& pending, bool finish, const Box3& space,
                                         const Bounds& box, V& v) {
