@@ -33,6 +33,13 @@ pub struct Survey<'a> {
     pub largest: f32,
 }
 
+impl Survey<'_> {
+    /// Expected number of particles within `range` of one of them.
+    pub fn neighbors(&self, range: f32) -> f64 {
+        self.n as f64 * Bulk::of(self.n, self.sample).share_within(f64::from(range))
+    }
+}
+
 /// The cells of every class.
 #[derive(Clone, Debug, Default)]
 pub struct CellPlan {
