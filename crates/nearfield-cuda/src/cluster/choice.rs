@@ -1,7 +1,5 @@
 //! Which variant suits a system.
 
-use crate::grid::Survey;
-
 /// Expected neighbours within range and skin from which pairs are found anew each time: a list of them would be read
 /// from memory as slowly, and is large.
 const DENSE: f64 = 300.0;
@@ -25,11 +23,11 @@ pub enum Variant {
 }
 
 impl Variant {
-    /// By a survey whose ranges are longer by the skin.
-    pub(super) fn choose(survey: &Survey, skin: f32) -> Self {
-        let Some(range) = survey.cutoff else { return Self::Pairs };
-        let neighbors = survey.neighbors(range);
-        if neighbors > DENSE || survey.n > MOST_LISTED {
+    /// For `n` particles that are expected to have so many `neighbors` within range and skin, where one cutoff serves all
+    /// pairs.
+    pub(super) fn choose(n: usize, neighbors: Option<f64>, skin: f32) -> Self {
+        let Some(neighbors) = neighbors else { return Self::Pairs };
+        if neighbors > DENSE || n > MOST_LISTED {
             Self::Pairs
         } else if neighbors >= SPARSE {
             Self::List
@@ -59,26 +57,14 @@ impl std::fmt::Display for Variant {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nearfield_core::{Boundary, SimBox};
-    use nearfield_kernels::Float4;
-    use rand::{RngExt, SeedableRng};
-
-    fn choose(n: usize, cutoff: Option<f32>, skin: f32) -> Variant {
-        let sim_box = SimBox::new([0.0; 3], [100.0; 3], [Boundary::Periodic; 3]).expect("a box");
-        let mut rng = rand_pcg::Pcg64Mcg::seed_from_u64(1);
-        let mut place = || rng.random_range(0.0..100.0f32);
-        let sample: Vec<Float4> = (0..4096).map(|_| Float4::new(place(), place(), place(), 1.0)).collect();
-        let largest = cutoff.unwrap_or(1.0);
-        Variant::choose(&Survey { n, sample: &sample, sim_box: &sim_box, cutoff, largest }, skin)
-    }
 
     #[test]
     fn density_skin_and_radii_decide() {
-        assert_eq!(choose(1_000_000, Some(2.8), 0.3), Variant::List);
-        assert_eq!(choose(1_000_000, Some(2.5), 0.0), Variant::List);
-        assert_eq!(choose(1_000_000, Some(10.0), 0.3), Variant::Pairs);
-        assert_eq!(choose(10_000, Some(1.3), 0.3), Variant::SparseList);
-        assert_eq!(choose(10_000, Some(1.0), 0.0), Variant::Pairs);
-        assert_eq!(choose(1_000_000, None, 0.3), Variant::Pairs);
+        let choose = |neighbors, skin| Variant::choose(1000, Some(neighbors), skin);
+        assert_eq!([choose(80.0, 0.3), choose(80.0, 0.0)], [Variant::List; 2]);
+        assert_eq!([choose(0.1, 0.3), choose(0.1, 0.0)], [Variant::SparseList, Variant::Pairs]);
+        assert_eq!(choose(1e4, 0.3), Variant::Pairs);
+        assert_eq!(Variant::choose(1000, None, 0.3), Variant::Pairs);
+        assert_eq!(Variant::choose(u32::MAX as usize, Some(80.0), 0.3), Variant::Pairs);
     }
 }

@@ -10,7 +10,7 @@ pub(crate) use list::StepQuery;
 use crate::{
     Buffer, Gpu,
     engine::{physics::Physics, state::State, survey::Sample},
-    grid::{self, Candidates, ForceQuery, Grid, Pairs, Survey},
+    grid::{self, Candidates, CellPlan, ForceQuery, Grid, Pairs, Survey},
 };
 use list::ClusterList;
 use nearfield_core::{Plan, Report, Result};
@@ -49,11 +49,12 @@ impl Clusters {
         let survey = physics.survey(sample);
         let with_skin =
             Survey { cutoff: survey.cutoff.map(|cutoff| cutoff + skin), largest: survey.largest + skin, ..survey };
-        self.variant = Variant::choose(&with_skin, skin);
+        let plan = CellPlan::new(&with_skin);
+        self.variant = Variant::choose(survey.n, physics.cutoff.map(|_| plan.neighbors), skin);
         if self.over_budget {
             self.variant = Variant::Pairs;
         }
-        self.grid.plan(if self.variant.uses_list() { &with_skin } else { &survey });
+        self.grid.take(if self.variant.uses_list() || skin == 0.0 { plan } else { CellPlan::new(&survey) });
         self.list.invalidate();
     }
 

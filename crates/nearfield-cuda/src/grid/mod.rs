@@ -51,7 +51,12 @@ impl Grid {
 
     /// Takes other cells from the next build on.
     pub fn plan(&mut self, survey: &Survey) {
-        self.plan = CellPlan::new(survey);
+        self.take(CellPlan::new(survey));
+    }
+
+    /// The same from a plan.
+    pub(crate) fn take(&mut self, plan: CellPlan) {
+        self.plan = plan;
     }
 
     /// Sorts `n` particles by the cells of [`Grid::plan`], which must have been called. `variable`: radii are in w.

@@ -58,8 +58,10 @@ template <class L, bool EXACT, bool ENERGY, Meetings MEETINGS> struct Gather : C
             pairs<NEAREST, true>(slot, xj, valid, image);
         } else if (Traits<L>::COSTLY) {
             pairs<SHIFTED, true>(slot, xj, valid, image);
-        } else if (__any_sync(ALL_LANES, valid && (image != HOME_IMAGE || slot - first < CLUSTER)) || is_partial()) {
+        } else if (is_partial() || __any_sync(ALL_LANES, valid && slot - first < CLUSTER)) {
             pairs<SHIFTED, true>(slot, xj, valid, image);
+        } else if (__any_sync(ALL_LANES, valid && image != HOME_IMAGE)) {
+            pairs<SHIFTED, false>(slot, xj, valid, image);
         } else {
             pairs<HOME, false>(slot, xj, valid, image);
         }
