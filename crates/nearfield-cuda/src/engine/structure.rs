@@ -27,9 +27,9 @@ pub(crate) enum Structure {
     /// Cells.
     Cells(Box<Grid>),
     /// Boxes, traced for forces.
-    Boxes(Bvh),
+    Boxes(Box<Bvh>),
     /// Boxes, traced for a list.
-    List(Bvh, StoredList),
+    List(Box<Bvh>, Box<StoredList>),
 }
 
 impl Structure {
@@ -37,9 +37,10 @@ impl Structure {
         Ok(match plan.method {
             Method::Brute => Self::Brute,
             Method::Cell => Self::Cells(Box::new(Grid::new(gpu))),
-            Method::RtForces | Method::RtPerse | Method::RtBoxes => Self::Boxes(Bvh::new(gpu, plan.images)?),
+            Method::RtForces | Method::RtPerse | Method::RtBoxes => Self::Boxes(Box::new(Bvh::new(gpu, plan.images)?)),
             Method::RtList => {
-                Self::List(Bvh::new(gpu, plan.images)?, StoredList::new(gpu, plan, &physics.sim_box, physics.largest))
+                let list = StoredList::new(gpu, plan, &physics.sim_box, physics.largest);
+                Self::List(Box::new(Bvh::new(gpu, plan.images)?), Box::new(list))
             }
         })
     }
