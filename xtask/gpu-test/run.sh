@@ -27,13 +27,15 @@ mkdir -p "$output" && output="$(cd "$output" && pwd)" || exit 2
 here="$(cd "$(dirname "$0")" && pwd)"
 nearfield="$here/bin/nearfield"
 tests="$here/bin/gpu"
+# Some ways to copy files lose their modes.
+chmod +x "$here"/bin/* 2>/dev/null
 export NEARFIELD_MELT_STEPS="${NEARFIELD_MELT_STEPS:-100000}"
 
 stages=()
 failed=0
 
-# stage NAME RESULT COMMAND...: runs a command with its messages in NAME.log. RESULT is a file whose last line is a JSON
-# object that becomes part of the summary, or "-".
+# stage NAME RESULT COMMAND...: runs a command with its messages in NAME.log. RESULT is a file that becomes part of the
+# summary: run.json as a whole, of others the last line, which is a JSON object too.
 stage() {
     local name="$1" result="$2" start status object="null"
     shift 2
@@ -43,12 +45,15 @@ stage() {
     status=$?
     local seconds
     seconds="$(awk -v a="$start" -v b="$(date +%s.%N)" 'BEGIN { printf "%.2f", b - a }')"
-    if [ "$result" != "-" ] && [ -s "$result" ]; then
-        object="$(tail -n 1 "$result")"
+    if [ -s "$result" ]; then
+        case "$result" in
+            */run.json) object="$(tr -d '\n' <"$result")" ;;
+            *) object="$(tail -n 1 "$result")" ;;
+        esac
     fi
     stages+=("{\"name\": \"$name\", \"status\": $status, \"seconds\": $seconds, \"result\": $object}")
     [ "$status" -eq 0 ] || failed=1
-    echo "   status $status, $seconds s${result:+, $object}"
+    echo "   status $status, $seconds s"
 }
 
 # trials NAME FILTER: runs the tests whose names contain FILTER, events in NAME.json. Tests that a machine without ray
@@ -74,8 +79,9 @@ if [ "$failed" -eq 0 ]; then
     done
     for method in $("$nearfield" methods | awk '$2 == "cuda" { print $1 }'); do
         [ "$method" = brute ] && continue
-        stage "melt-$method" - "$nearfield" run "$here/melt.toml" --device cuda:0 --method "$method" \
-            --output "$output/melt-$method" --set output.trajectory_every=0
+        folder="$output/melt-$method"
+        stage "melt-$method" "$folder/run.json" "$nearfield" run "$here/melt.toml" --device cuda:0 \
+            --method "$method" --output "$folder" --set output.trajectory_every=0
     done
     for bench in "$here"/bin/bench-*; do
         [ -x "$bench" ] || continue
