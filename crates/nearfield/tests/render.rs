@@ -218,9 +218,11 @@ fn a_transparent_background_is_transparent_and_particles_are_not() {
 
 #[test]
 fn the_same_input_gives_the_same_picture_whatever_the_threads() {
-    let start = Generate { n: 500, density: Some(0.8), ..Generate::default() }.build([Boundary::Periodic; 3], 1.0).unwrap();
+    let start =
+        Generate { n: 500, density: Some(0.8), ..Generate::default() }.build([Boundary::Periodic; 3], 1.0).unwrap();
     let system = System { sim_box: start.sim_box, particles: start.particles, ..system(Boundary::Periodic, &[]) };
-    let options = Options { color_by: ColorBy::Neighbors, shape: Shape::Sphere, ..options(View { size: [90, 60], ..FRONT }) };
+    let options =
+        Options { color_by: ColorBy::Neighbors, shape: Shape::Sphere, ..options(View { size: [90, 60], ..FRONT }) };
     let with_threads = |n| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap();
         pool.install(|| draw(&system, options.clone()))
@@ -235,7 +237,8 @@ fn a_picture_of_a_written_file_has_the_size_asked_for() {
     let path = std::env::temp_dir().join(format!("nearfield-render-{}.png", std::process::id()));
     let image = draw(&system(Boundary::Periodic, &[[5.0; 3]]), options(View { size: [123, 45], ..FRONT }));
     image.write_png(&path).unwrap();
-    let mut reader = png::Decoder::new(std::io::BufReader::new(std::fs::File::open(&path).unwrap())).read_info().unwrap();
+    let mut reader =
+        png::Decoder::new(std::io::BufReader::new(std::fs::File::open(&path).unwrap())).read_info().unwrap();
     let mut data = vec![0; reader.output_buffer_size().unwrap()];
     let info = reader.next_frame(&mut data).unwrap();
     std::fs::remove_file(&path).unwrap();

@@ -1,6 +1,6 @@
 //! From pixels to rays.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use nearfield_cpu::Ray;
 
 /// How depth is drawn.
@@ -38,6 +38,8 @@ impl Default for View {
 const HALF_VIEW: f32 = 0.27;
 /// Part of the picture that is filled, at zoom 1.
 const FILLED: f32 = 0.94;
+/// Corrections of where the camera looks; each leaves a small part of the error.
+const CENTERINGS: usize = 6;
 
 /// A camera in its place.
 #[derive(Clone, Copy, Debug)]
@@ -57,34 +59,44 @@ pub(super) struct Camera {
 }
 
 impl Camera {
-    /// A camera that looks at the middle of `points`, all of which it sees at zoom 1 in the `width` leftmost pixels of
-    /// the picture.
+    /// A camera that sees all of `points` at zoom 1, in the middle of the `width` leftmost pixels of the picture.
     pub fn new(view: &View, width: f32, points: &[Vec3]) -> Self {
+        let lo = points.iter().copied().reduce(Vec3::min).unwrap_or(Vec3::ZERO);
+        let hi = points.iter().copied().reduce(Vec3::max).unwrap_or(Vec3::ONE);
+        let center = [0.5 * width, 0.5 * view.size[1] as f32];
+        let mut camera = Self::facing(0.5 * (lo + hi), view, center, points);
+        // What is nearer is larger, so the middle of the points is not that of their picture.
+        for _ in 0..CENTERINGS {
+            let seen = || points.iter().map(|&point| Vec2::from(camera.project(point)));
+            let lo = seen().reduce(Vec2::min).unwrap_or(center.into());
+            let hi = seen().reduce(Vec2::max).unwrap_or(center.into());
+            let off = camera.pixel * (0.5 * (lo + hi) - Vec2::from(center));
+            let target = camera.target + off.x * camera.right - off.y * camera.up;
+            camera = Self::facing(target, view, center, points);
+        }
+        camera
+    }
+
+    /// A camera that looks at a target from as near as `points` allow.
+    fn facing(target: Vec3, view: &View, center: [f32; 2], points: &[Vec3]) -> Self {
         let (sin_azimuth, cos_azimuth) = view.azimuth.to_radians().sin_cos();
         let (sin_elevation, cos_elevation) = view.elevation.to_radians().sin_cos();
         let right = Vec3::new(-sin_azimuth, cos_azimuth, 0.0);
         let back = Vec3::new(cos_elevation * cos_azimuth, cos_elevation * sin_azimuth, sin_elevation);
         let up = back.cross(right);
-        let lo = points.iter().copied().reduce(Vec3::min).unwrap_or(Vec3::ZERO);
-        let hi = points.iter().copied().reduce(Vec3::max).unwrap_or(Vec3::ONE);
-        let target = 0.5 * (lo + hi);
-        let center = [0.5 * width, 0.5 * view.size[1] as f32];
         let offsets = || points.iter().map(|&point| point - target);
-        let reach = |offset: Vec3, depth: f32| {
+        let reach = |offset: Vec3| {
             let [x, y] = [offset.dot(right).abs() / center[0], offset.dot(up).abs() / center[1]];
-            x.max(y) / depth
+            x.max(y) / FILLED
         };
         let radius = offsets().map(Vec3::length).fold(f32::MIN_POSITIVE, f32::max);
         let (distance, pixel) = match view.projection {
-            Projection::Orthographic => {
-                let pixel = offsets().map(|offset| reach(offset, FILLED)).fold(0.0, f32::max);
-                (4.0 * radius, pixel)
-            }
+            Projection::Orthographic => (4.0 * radius, offsets().map(reach).fold(0.0, f32::max)),
             Projection::Perspective => {
                 // A point at offset x and depth z is in the picture when |x| is at most (distance - z) times the
                 // tangent of the angle of view on this axis.
                 let per_pixel = HALF_VIEW / center[0].min(center[1]);
-                let needed = |offset: Vec3| offset.dot(back) + reach(offset, FILLED * per_pixel);
+                let needed = |offset: Vec3| offset.dot(back) + reach(offset) / per_pixel;
                 let distance = offsets().map(needed).fold(1.1 * radius, f32::max);
                 (distance, per_pixel * distance)
             }
@@ -110,8 +122,7 @@ impl Camera {
     }
 
     /// The point of the picture where a point is seen.
-    #[cfg(test)]
-    pub fn project(&self, point: Vec3) -> [f32; 2] {
+    fn project(&self, point: Vec3) -> [f32; 2] {
         let offset = point - self.target;
         let scale = match self.projection {
             Projection::Orthographic => 1.0,

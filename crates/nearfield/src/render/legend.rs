@@ -31,9 +31,9 @@ impl Legend {
             Self::Bar { title, range, .. } => {
                 let labels: Vec<String> = ticks(*range).into_iter().map(|(_, label)| label).collect();
                 let bar = letter * (1.0 + GAP) + widest(&mut labels.iter().map(String::as_str));
-                bar.max(widest(&mut lines(title).iter().map(String::as_str))) + 2.0 * GAP * letter
+                bar.max(widest(&mut lines(title).iter().map(String::as_str))) + 2.5 * GAP * letter
             }
-            Self::Names(names) => widest(&mut names.iter().map(|(name, _)| name.as_str())) + letter * (1.0 + 3.0 * GAP),
+            Self::Names(names) => widest(&mut names.iter().map(|(name, _)| name.as_str())) + letter * (1.0 + 3.5 * GAP),
         }
     }
 

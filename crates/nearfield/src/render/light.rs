@@ -11,10 +11,12 @@ use glam::Vec3;
 use nearfield_cpu::Ray;
 
 /// Light from the key lamp on a surface that faces it, and from the sky on one that sees all of it.
-const KEY: f32 = 0.62;
-const SKY: f32 = 0.58;
+const KEY: f32 = 0.72;
+const SKY: f32 = 0.64;
 /// The sky's light from below, of that from above.
-const GROUND: f32 = 0.45;
+const GROUND: f32 = 0.5;
+/// The part of the sky's light that reaches everywhere.
+const FILL: f32 = 0.22;
 /// Radius of the key lamp at unit distance: softness of shadows.
 const LAMP: f32 = 0.16;
 /// How far the sky is hidden by others, in radii of the sphere in question.
@@ -81,9 +83,9 @@ impl Lights {
         let ambient = if all <= 0.0 {
             open
         } else if mine > 0.0 && !spheres.blocked(&towards(sky), SKY_REACH * hit.radius) {
-            open * mine / all * self.samples.len() as f32
+            open * (FILL + (1.0 - FILL) * mine / all * self.samples.len() as f32)
         } else {
-            0.0
+            open * FILL
         };
         hit.color * (key + ambient) + Vec3::splat(shine)
     }

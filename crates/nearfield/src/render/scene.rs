@@ -21,13 +21,15 @@ pub(super) const NEIGHBOR_HOME: color::Rgb = [0xa9, 0xd2, 0xee];
 pub(super) const OTHER: color::Rgb = [0xd2, 0xd2, 0xd2];
 /// Edges of the box.
 const BOX: color::Rgb = [0x80, 0x88, 0x90];
-/// Size of particles that are neither in focus nor neighbours, of that of those.
-const OTHER_SIZE: f32 = 0.6;
+/// Radii beside that of the particle in focus: smaller ones leave it in sight.
+const NEIGHBOR_SIZE: f32 = 0.6;
+const OTHER_SIZE: f32 = 0.4;
 /// Size of particles inside their shapes, which would hide much else at full size.
 const INNER_SIZE: f32 = 0.5;
-/// Thickness of the box's edges and of rays, and width of the frames of panes, in pixels of a picture 1000 high.
+/// Thickness of the box's edges, of rays and of lines to neighbours, and width of the frames of panes, in pixels of a picture 1000 high.
 const BOX_WIDTH: f32 = 1.6;
-const RAY_WIDTH: f32 = 4.0;
+const RAY_WIDTH: f32 = 4.5;
+const BOND_WIDTH: f32 = 2.5;
 const FRAME_WIDTH: f32 = 2.0;
 
 /// What is in a picture.
@@ -58,6 +60,7 @@ struct Parts {
     shape_cutoff: Vec<f32>,
     shape_color: Vec<Vec3>,
     rays: Vec<[Vec3; 2]>,
+    bonds: Vec<[Vec3; 2]>,
 }
 
 impl Scene {
@@ -71,6 +74,7 @@ impl Scene {
         let width = |pixels: f32| pixels * camera.pixel * options.view.size[1] as f32 / 1000.0;
         let line = |color, thickness| move |ends| Line { ends, radius: 0.5 * width(thickness), color: light(color) };
         let mut lines: Vec<Line> = parts.rays.into_iter().map(line(FOCUS, RAY_WIDTH)).collect();
+        lines.extend(parts.bonds.into_iter().map(line(NEIGHBOR, BOND_WIDTH)));
         if options.draw_box && lines::is_real(&system.sim_box) {
             let edges = lines::edges(system.sim_box.lo().into(), system.sim_box.hi().into());
             lines.extend(edges.into_iter().map(line(BOX, BOX_WIDTH)));
@@ -126,7 +130,7 @@ fn whole(system: &System, values: Option<&[f64]>, fixed: &Fixed) -> Parts {
         shape_cutoff: (0..n).map(|i| system.radii.get(i)).collect(),
         shape_color: color.clone(),
         color,
-        rays: Vec::new(),
+        ..Parts::default()
     }
 }
 
@@ -144,7 +148,7 @@ fn focused(system: &System, focus: &Focus, fixed: &Fixed) -> Parts {
     };
     sphere(center, *radius, FOCUS);
     for place in focus.places(system) {
-        sphere(place, *radius, NEIGHBOR);
+        sphere(place, NEIGHBOR_SIZE * radius, NEIGHBOR);
     }
     for (i, at) in system.particles.position.iter().enumerate() {
         let at = Vec3::from(at);
@@ -164,6 +168,7 @@ fn focused(system: &System, focus: &Focus, fixed: &Fixed) -> Parts {
     };
     if options.shape == Shape::Point {
         shape(center, cutoff, FOCUS);
+        parts.bonds = focus.places(system).map(|place| [center, place]).collect();
     } else {
         for (place, &(j, _)) in focus.places(system).zip(&focus.neighbors) {
             shape(place, system.radii.get(j as usize), NEIGHBOR);
@@ -178,7 +183,12 @@ pub(super) fn extent(system: &System, options: &Options, radius: f32) -> Vec<Vec
     let (lo, hi) = match options.focus {
         Some(focus) => {
             let center = Vec3::from(system.particles.position.get(focus));
-            let margin = Vec3::splat(1.05 * system.radii.get(focus));
+            let cutoff = system.radii.get(focus);
+            // Neighbours' shapes reach farther than the neighbours.
+            let margin = Vec3::splat(match options.shape {
+                Shape::Point => 1.05 * cutoff,
+                shape => 0.95 * (cutoff + shape.half_width(cutoff)),
+            });
             (center - margin, center + margin)
         }
         None => {

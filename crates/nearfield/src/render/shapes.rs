@@ -159,7 +159,7 @@ fn sphere(offset: Vec3, direction: Vec3, radius: f32, push: &mut impl FnMut(f32,
         let distance = along - square.sqrt();
         let normal = (offset + distance * direction) / radius;
         let rim = (1.0 - normal.dot(direction).abs()).powi(4);
-        push(distance, normal, PANE + 0.6 * rim);
+        push(distance, normal, 0.5 * PANE + 0.6 * rim);
     }
 }
 
