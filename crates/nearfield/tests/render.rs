@@ -85,7 +85,7 @@ fn perspective_shrinks_the_farther_sphere_and_orthography_does_not() {
         let options = options(View { projection, ..FRONT });
         let options = Options { radius: Some(0.8), draw_box: false, ..options };
         let row = covered(&draw(&system(Boundary::Periodic, &positions), options))[100].clone();
-        row.into_iter().fold([0, 0], |[near, far], x| if x < 100 { [near + 1, far] } else { [near, far + 1] })
+        row.into_iter().fold([0_i32, 0], |[near, far], x| if x < 100 { [near + 1, far] } else { [near, far + 1] })
     };
     let [near, far] = widths(Projection::Perspective);
     assert!(f64::from(near) > 1.15 * f64::from(far) && far > 15, "near {near} pixels, far {far} pixels");
@@ -147,12 +147,14 @@ fn the_slowest_and_the_fastest_have_the_colours_of_the_ends() {
 #[test]
 fn the_focus_has_exactly_the_neighbours_that_brute_force_finds() {
     for boundary in [Boundary::Periodic, Boundary::Open] {
-        let spec = Generate { positions: Positions::Uniform, n: 400, lengths: Some([10.0; 3]), ..Generate::default() };
+        let spec =
+            Generate { positions: Positions::Disordered, n: 400, lengths: Some([10.0; 3]), ..Generate::default() };
         let particles = spec.build([boundary; 3], 1.0).unwrap().particles;
         let own: Vec<f32> = (0..400).map(|i| 0.5 + 0.004 * i as f32).collect();
         for radii in [Radii::Uniform(2.0), Radii::PerParticle(own)] {
             let system = System { particles: particles.clone(), radii, ..system(boundary, &[]) };
             let pairs = oracle::pairs(&system.sim_box, &system.particles, &system.radii);
+            let mut n_neighbors = 0;
             for particle in [0, 7, 399] {
                 let mut expected: Vec<(u32, [i8; 3])> = Vec::new();
                 for pair in &pairs {
@@ -163,9 +165,10 @@ fn the_focus_has_exactly_the_neighbours_that_brute_force_finds() {
                     }
                 }
                 expected.sort_unstable();
-                assert!(expected.len() > 2);
+                n_neighbors += expected.len();
                 assert_eq!(Focus::find(&system, particle).unwrap(), Focus { particle, neighbors: expected });
             }
+            assert!(n_neighbors > 10, "{boundary:?}: {n_neighbors} neighbours test little");
         }
     }
 }

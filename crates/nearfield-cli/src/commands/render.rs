@@ -1,6 +1,6 @@
 //! `nearfield render`: pictures.
 
-use super::{configuration, print_note};
+use super::{configuration, note_radii, print_note};
 use crate::{
     arguments::render::{ColorName, FrameRange, RenderArguments, ShapeName},
     failure::Failure,
@@ -58,6 +58,9 @@ fn single(arguments: &RenderArguments, options: Options) -> Result<(), Failure> 
         let mut reader = Reader::new(arguments)?;
         reader.system(io::read(&arguments.input, &frame)?)?
     };
+    if arguments.cutoff.is_some() {
+        note_radii(&system.radii);
+    }
     let renderer = Renderer::new(&system, options)?;
     draw(&renderer, &system, 1)?.write_png(&arguments.output)?;
     print_note(&format!("wrote {} particles to {}", system.particles.len(), arguments.output.display()));
@@ -175,7 +178,7 @@ impl<'a> Reader<'a> {
         if arguments.color == ColorName::Speed && configuration.velocity.is_none() {
             return Err(Failure::request(format!("{file} gives no velocities, which --color speed needs")));
         }
-        if !self.typed {
+        if !self.typed && !configuration.is_empty() {
             let named = |name: &String| TypeConfig { name: Some(name.clone()), ..TypeConfig::default() };
             self.config.interaction.types = configuration.species.names.iter().map(named).collect();
             self.typed = true;

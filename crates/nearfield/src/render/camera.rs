@@ -35,7 +35,7 @@ impl Default for View {
 }
 
 /// Tangent of half the angle of view, along the shorter side of the picture.
-const HALF_VIEW: f32 = 0.27;
+const HALF_VIEW: f32 = 0.2;
 /// Part of the picture that is filled, at zoom 1.
 const FILLED: f32 = 0.94;
 /// Corrections of where the camera looks; each leaves a small part of the error.

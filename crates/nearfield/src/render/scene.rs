@@ -22,15 +22,15 @@ pub(super) const OTHER: color::Rgb = [0xd2, 0xd2, 0xd2];
 /// Edges of the box.
 const BOX: color::Rgb = [0x80, 0x88, 0x90];
 /// Radii beside that of the particle in focus: smaller ones leave it in sight.
-const NEIGHBOR_SIZE: f32 = 0.6;
-const OTHER_SIZE: f32 = 0.4;
+const NEIGHBOR_SIZE: f32 = 0.5;
+const OTHER_SIZE: f32 = 0.35;
 /// Size of particles inside their shapes, which would hide much else at full size.
 const INNER_SIZE: f32 = 0.5;
 /// Thickness of the box's edges, of rays and of lines to neighbours, and width of the frames of panes, in pixels of a picture 1000 high.
 const BOX_WIDTH: f32 = 1.6;
 const RAY_WIDTH: f32 = 4.5;
 const BOND_WIDTH: f32 = 2.5;
-const FRAME_WIDTH: f32 = 2.0;
+const FRAME_WIDTH: f32 = 2.6;
 
 /// What is in a picture.
 pub(super) struct Scene {
@@ -187,7 +187,7 @@ pub(super) fn extent(system: &System, options: &Options, radius: f32) -> Vec<Vec
             // Neighbours' shapes reach farther than the neighbours.
             let margin = Vec3::splat(match options.shape {
                 Shape::Point => 1.05 * cutoff,
-                shape => 0.95 * (cutoff + shape.half_width(cutoff)),
+                shape => 0.8 * (cutoff + shape.half_width(cutoff)),
             });
             (center - margin, center + margin)
         }
@@ -208,7 +208,7 @@ pub(super) fn extent(system: &System, options: &Options, radius: f32) -> Vec<Vec
     lines::edges(lo, hi).into_iter().flatten().collect()
 }
 
-/// The legend of the picture.
+/// Whether colours stand for numbers: beside a focus they say what particles are to it.
 pub(super) fn is_colored_by_number(options: &Options) -> bool {
     options.focus.is_none() && options.color_by != ColorBy::Type
 }
