@@ -104,7 +104,6 @@ impl Node {
     /// The distances at which a ray from `origin` enters the children, and a bit for each child that it meets within
     /// `reach`. `inverse` is one over its direction, finite on every axis.
     #[inline(always)]
-    #[expect(clippy::needless_range_loop, reason = "kernels index")]
     pub fn entries(&self, origin: [f32; 3], inverse: [f32; 3], reach: f32) -> ([f32; LANES], u32) {
         let (mut near, mut far) = ([0.0; LANES], [reach; LANES]);
         for axis in 0..3 {
