@@ -108,7 +108,7 @@ fn ticks([lo, hi]: [f64; 2]) -> Vec<(f64, String)> {
     let step = [1.0, 2.0, 5.0, 10.0].map(|s| s * decade).into_iter().find(|&s| s >= rough).unwrap_or(rough);
     let decimals = (-step.log10().floor()).clamp(0.0, 12.0) as usize;
     let label = |value: f64| {
-        if step >= 1e6 || step < 1e-4 { format!("{value:.1e}") } else { format!("{value:.decimals$}") }
+        if !(1e-4..1e6).contains(&step) { format!("{value:.1e}") } else { format!("{value:.decimals$}") }
     };
     let (first, last) = ((lo / step - 1e-9).ceil() as i64, (hi / step + 1e-9).floor() as i64);
     let ticks = (first..=last).map(|tick| tick as f64 * step);
