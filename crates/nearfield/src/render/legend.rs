@@ -109,11 +109,7 @@ fn ticks([lo, hi]: [f64; 2], counts: bool) -> Vec<(f64, String)> {
     let step = if counts { step.max(1.0) } else { step };
     let decimals = (-step.log10().floor()).clamp(0.0, 12.0) as usize;
     let label = |value: f64| {
-<<<<<<< HEAD
-        if !(1e-4..1e6).contains(&step) { format!("{value:.1e}") } else { format!("{value:.decimals$}") }
-=======
         if (1e-4..1e6).contains(&step) { format!("{value:.decimals$}") } else { format!("{value:.1e}") }
->>>>>>> render
     };
     let (first, last) = ((lo / step - 1e-9).ceil() as i64, (hi / step + 1e-9).floor() as i64);
     let ticks = (first..=last).map(|tick| tick as f64 * step);
