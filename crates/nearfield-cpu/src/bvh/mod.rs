@@ -9,6 +9,7 @@ mod hilbert;
 mod images;
 mod node;
 mod order;
+mod ray_cast;
 mod sort;
 #[cfg(test)]
 mod tests;
@@ -21,6 +22,7 @@ use nearfield_core::{Images, SimBox, predicate::conservative_range};
 use node::Aabb;
 pub(crate) use order::CurveOrder;
 use pulp::{Arch, Simd, WithSimd};
+pub use ray_cast::Ray;
 use rayon::prelude::*;
 use std::ops::Range;
 use tree::{Tree, half_width};

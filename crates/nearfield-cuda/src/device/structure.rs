@@ -106,6 +106,13 @@ impl AccelerationStructure for OptixStructure {
     }
 }
 
+impl Drop for OptixStructure {
+    fn drop(&mut self) {
+        // As for the context, whose last owner this may be.
+        let _ = self.device.bind();
+    }
+}
+
 fn around(boxes: Ptr<Aabb>, n: u32) -> BuildInput {
     let stride = size_of::<Aabb>() as u32;
     BuildInput::Aabbs(Aabbs { buffer: boxes.address(), count: n, stride, any_hit: AnyHit::Never })

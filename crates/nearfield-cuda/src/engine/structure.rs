@@ -30,9 +30,9 @@ pub(crate) enum Structure {
     /// Cells, and lists where they pay.
     Clusters(Box<Clusters>),
     /// Boxes, traced for forces.
-    Boxes(Bvh),
+    Boxes(Box<Bvh>),
     /// Boxes, traced for a list.
-    List(Bvh, StoredList),
+    List(Box<Bvh>, Box<StoredList>),
 }
 
 impl Structure {
@@ -41,9 +41,10 @@ impl Structure {
             Method::Brute => Self::Brute,
             Method::Cell => Self::Cells(Box::new(Grid::new(gpu))),
             Method::Cluster => Self::Clusters(Box::new(Clusters::new(gpu, plan, physics))),
-            Method::RtForces | Method::RtPerse | Method::RtBoxes => Self::Boxes(Bvh::new(gpu, plan.images)?),
+            Method::RtForces | Method::RtPerse | Method::RtBoxes => Self::Boxes(Box::new(Bvh::new(gpu, plan.images)?)),
             Method::RtList => {
-                Self::List(Bvh::new(gpu, plan.images)?, StoredList::new(gpu, plan, &physics.sim_box, physics.largest))
+                let list = StoredList::new(gpu, plan, &physics.sim_box, physics.largest);
+                Self::List(Box::new(Bvh::new(gpu, plan.images)?), Box::new(list))
             }
         })
     }
