@@ -109,11 +109,8 @@ fn lennard_jones_liquids_follow_the_trajectory_of_all_pairs() {
     let mut gas = cases::lattice(6, 4.0, 1.5, [Boundary::Periodic; 3]);
     gas.interaction = Interaction::lennard_jones();
     cases::thermalize(&mut gas, 4.0, &mut cases::rng(4));
-    let systems = [
-        (cases::liquid(5, 1.0, 0.05, 2.5, 1), Variant::List),
-        (wca, Variant::List),
-        (gas, Variant::SparseList),
-    ];
+    let systems =
+        [(cases::liquid(5, 1.0, 0.05, 2.5, 1), Variant::List), (wca, Variant::List), (gas, Variant::SparseList)];
     for (system, variant) in systems {
         let mut ends = [Method::Brute, Method::Cluster].map(|method| {
             let mut engine = loaded(&system, &Plan::new(method));
@@ -129,7 +126,10 @@ fn lennard_jones_liquids_follow_the_trajectory_of_all_pairs() {
         let [expected, found] = &mut ends;
         for i in 0..expected.len() {
             let (a, b) = (expected.velocity.get(i), found.velocity.get(i));
-            assert!((0..3).all(|axis| (a[axis] - b[axis]).abs() < 2e-3), "{variant}: particle {i} has {b:?}, not {a:?}");
+            assert!(
+                (0..3).all(|axis| (a[axis] - b[axis]).abs() < 2e-3),
+                "{variant}: particle {i} has {b:?}, not {a:?}"
+            );
         }
     }
 }

@@ -94,6 +94,8 @@ struct Listing : Cluster {
         if ((u64)begin + chunks <= a.capacity) {
             u32* to = a.entry + (u64)begin * WARP;
             for (u32 k = lane; k < entries; k += WARP) to[k] = stage[k];
+        } else if (lane == 0) {
+            atomicMin(&a.control->rebuild_at, (u64)0);
         }
         __syncwarp();
         if (staged > entries && lane < staged - entries) stage[lane] = stage[entries + lane];

@@ -166,6 +166,7 @@ impl Bench {
             ("n", json!(case.system.particles.len())),
             ("device", json!(self.engine.device())),
             ("plan", json!(plan)),
+            ("variant", json!(self.engine.cluster_variant().map(|variant| variant.to_string()))),
             ("version", json!(env!("CARGO_PKG_VERSION"))),
         ] {
             fields.insert(key.into(), value);
@@ -195,7 +196,8 @@ impl Bench {
             return outcome;
         }
         let exact = if plan.deterministic { " exact" } else { "" };
-        println!("{:<40} {:<10} {:<9}{exact} {}", case.name, plan.method, plan.images, numbers.join("  "));
+        let variant = record["variant"].as_str().map(|variant| format!(" {variant}")).unwrap_or_default();
+        println!("{:<40} {:<10} {:<9}{exact}{variant} {}", case.name, plan.method, plan.images, numbers.join("  "));
         if let Some(output) = &mut self.output {
             writeln!(output, "{record}").expect("the output can be written");
         }

@@ -24,7 +24,7 @@ const CHUNK: u64 = 32;
 const BYTES_PER_CHUNK: u64 = CHUNK * size_of::<u32>() as u64;
 
 /// Chunks of a cluster for which there is room at first.
-const FIRST_CHUNKS: usize = 8;
+const FIRST_CHUNKS: u64 = 8;
 
 /// Steps that a list is first thought to serve for.
 const FIRST_LIFE: u64 = 8;
@@ -45,7 +45,8 @@ pub(crate) struct ClusterList {
     entry: Buffer<u32>,
     control: Buffer<ClusterControl>,
     valid: bool,
-    over_budget: bool,
+    /// Whether it is known that there was room for the list.
+    settled: bool,
     /// Whether the list serves the present positions, where that is known without looking at them.
     known: Option<bool>,
     /// Evaluations since the list was built.
@@ -84,7 +85,7 @@ impl ClusterList {
             entry: Buffer::new(gpu, "lists of clusters"),
             control: Buffer::new(gpu, "lists of clusters"),
             valid: false,
-            over_budget: false,
+            settled: false,
             known: None,
             age: 0,
             life: FIRST_LIFE,
@@ -98,11 +99,6 @@ impl ClusterList {
     /// Forgets the list.
     pub fn invalidate(&mut self) {
         self.valid = false;
-    }
-
-    /// Whether the list last built would be larger than the budget: then there is none.
-    pub fn is_over_budget(&self) -> bool {
-        self.over_budget
     }
 
     /// Whether the list still holds every pair. Waits for the device unless the last steps were by the list.
@@ -128,8 +124,8 @@ impl ClusterList {
         Ok(self.control()?.rebuild_at > 0)
     }
 
-    /// Lists what is near each cluster of particles in the order of `grid`, which was built for range and skin; waits for
-    /// the device, to know whether there was room.
+    /// Enqueues the listing of what is near each cluster of particles in the order of `grid`, which was built for range
+    /// and skin. Whether there was room for it is seen later: by [`ClusterList::settle`], or at the end of steps.
     pub fn build(
         &mut self,
         physics: &Physics,
@@ -138,39 +134,49 @@ impl ClusterList {
         budget: u64,
         report: &mut Report,
     ) -> Result<()> {
-        self.valid = false;
-        let n_clusters = state.len().div_ceil(CLUSTER);
-        let mut chunks = (self.entry.len() as u64 / CHUNK).max((n_clusters * FIRST_CHUNKS) as u64);
-        loop {
-            self.entry.resize((chunks.min(budget / BYTES_PER_CHUNK) * CHUNK) as usize)?;
-            let room = self.entry.len() as u64 / CHUNK;
-            self.segment.resize(n_clusters + room as usize / SEGMENT)?;
-            let empty = ClusterControl { rebuild_at: u64::MAX, done: u64::MAX, ..ClusterControl::zeroed() };
-            self.control.upload(&[empty])?;
-            self.enqueue(physics, state, grid, n_clusters)?;
-            let needed = u64::from(self.control()?.chunks);
-            if needed * BYTES_PER_CHUNK > budget {
-                self.over_budget = true;
-                self.entry.resize(0)?;
-                return Ok(());
-            }
-            if needed <= room {
-                break;
-            }
-            // Lists of other moments may be longer.
-            chunks = needed + needed / 8;
-        }
+        let first = state.len().div_ceil(CLUSTER) as u64 * FIRST_CHUNKS;
+        self.enqueue(physics, state, grid, self.room().max(first).min(budget / BYTES_PER_CHUNK))?;
         report.list_builds += 1;
         if self.age == 1 && self.skin > 0.0 && report.list_builds > 1 {
             report.dangerous_builds += 1;
         }
         self.life = self.age.max(1);
         self.age = 0;
-        self.valid = true;
+        (self.valid, self.settled) = (true, false);
         Ok(())
     }
 
-    fn enqueue(&self, physics: &Physics, state: &State, grid: &Grid, n_clusters: usize) -> Result<()> {
+    /// Waits for the list that is being built and builds it again where there was no room; gives whether it fits the
+    /// budget.
+    pub fn settle(&mut self, physics: &Physics, state: &State, grid: &Grid, budget: u64) -> Result<bool> {
+        while !self.settled {
+            let needed = u64::from(self.control()?.chunks);
+            if needed * BYTES_PER_CHUNK > budget {
+                self.entry.resize(0)?;
+                self.valid = false;
+                return Ok(false);
+            }
+            self.settled = needed <= self.room();
+            if !self.settled {
+                // Lists of other moments may be longer.
+                self.enqueue(physics, state, grid, (needed + needed / 8).min(budget / BYTES_PER_CHUNK))?;
+            }
+        }
+        Ok(true)
+    }
+
+    /// Chunks that there is room for.
+    fn room(&self) -> u64 {
+        self.entry.len() as u64 / CHUNK
+    }
+
+    /// Enqueues the listing with room for so many chunks.
+    fn enqueue(&mut self, physics: &Physics, state: &State, grid: &Grid, room: u64) -> Result<()> {
+        let n_clusters = state.len().div_ceil(CLUSTER);
+        self.entry.resize((room * CHUNK) as usize)?;
+        self.segment.resize(n_clusters + room as usize / SEGMENT)?;
+        let nothing_yet = ClusterControl { rebuild_at: u64::MAX, done: u64::MAX, ..ClusterControl::zeroed() };
+        self.control.upload(&[nothing_yet])?;
         let arguments = ClusterListArgs {
             law: Law { cutoff: physics.law.cutoff + self.skin, ..physics.law },
             space: physics.space,
@@ -180,7 +186,7 @@ impl ClusterList {
             control: self.control.ptr(),
             n: state.len() as u32,
             n_clusters: n_clusters as u32,
-            capacity: (self.entry.len() as u64 / CHUNK) as u32,
+            capacity: room as u32,
             segment_capacity: self.segment.len() as u32,
             slack: grid.slack(),
             margin: 0.5 * self.skin + physics.slack,
@@ -199,7 +205,7 @@ impl ClusterList {
     }
 
     /// Makes steps from forces at `step` on, at most `most`, at positions that the list serves; waits for the device to
-    /// know how many there were, at least one.
+    /// know how many there were. None are made where there was no room for the list: it is to be settled first.
     pub fn steps(&mut self, query: StepQuery, grid: &Grid, step: u64, most: u64) -> Result<u64> {
         let StepQuery { physics, state, next, integrator, status, kernels } = query;
         let n = state.len();
@@ -224,11 +230,19 @@ impl ClusterList {
             unsafe { launch(&*self.gpu, kernel, threads, &arguments)? };
             std::mem::swap(&mut state.moving.position, next);
         }
-        let ClusterControl { rebuild_at, done, .. } = self.control()?;
-        // The first step is always done: the list serves its positions. Nothing is, and nothing moves, without particles.
-        let made = if n == 0 { asked } else { done - step + 1 };
+        let ClusterControl { rebuild_at, done, chunks, .. } = self.control()?;
+        self.settled = u64::from(chunks) <= self.room();
+        // Without particles nothing is done, and nothing is to do.
+        let made = match (n, self.settled) {
+            (0, _) => asked,
+            (_, true) => done - step + 1,
+            (_, false) => 0,
+        };
         if (asked - made) % 2 == 1 {
             std::mem::swap(&mut state.moving.position, next);
+        }
+        if made == 0 {
+            return Ok(0);
         }
         self.known = Some(rebuild_at > step + made);
         // The first evaluation was booked when freshness was asked for.

@@ -14,7 +14,11 @@ use crate::{
 };
 use list::ClusterList;
 use nearfield_core::{Plan, Report, Result};
-use nearfield_kernels::{Float4, layouts::Results};
+use nearfield_kernels::{
+    Float4,
+    kernels::{self, StepKernels},
+    layouts::Results,
+};
 use std::sync::Arc;
 
 /// Cells, and lists where they pay.
@@ -77,14 +81,20 @@ impl Clusters {
         }
         // Nothing needs the forces any more: they are of positions before.
         state.permute(self.grid.order().ptr(), &mut Buffer::new(&self.gpu, "forces"))?;
-        self.list.build(physics, state, &self.grid, self.memory_budget, report)?;
-        if self.list.is_over_budget() {
-            self.over_budget = true;
-            self.variant = Variant::Pairs;
-            // SAFETY: as above; the particles have new places.
-            unsafe { self.grid.build(state.moving.position.ptr(), state.len(), false)? };
+        self.list.build(physics, state, &self.grid, self.memory_budget, report)
+    }
+
+    /// Makes sure that there is a list where there is to be one, or turns to pairs where it would exceed the budget. To
+    /// be called before forces are enqueued.
+    pub(crate) fn settle(&mut self, physics: &Physics, state: &State, report: &mut Report) -> Result<()> {
+        if !self.variant.uses_list() || self.list.settle(physics, state, &self.grid, self.memory_budget)? {
+            return Ok(());
         }
-        Ok(())
+        report.list_builds -= 1;
+        self.over_budget = true;
+        self.variant = Variant::Pairs;
+        // SAFETY: the state's positions are n. The particles were given new places after the cells were built.
+        unsafe { self.grid.build(state.moving.position.ptr(), state.len(), false) }
     }
 
     /// Whether forces are added to: results must be zero before, and order-independent sums be finished after.
@@ -116,6 +126,11 @@ impl Clusters {
         };
         // SAFETY: the arrays of particles and results have n elements each.
         unsafe { grid::forces(&*self.gpu, self.candidates(), &query) }
+    }
+
+    /// The kernels that step by the list.
+    pub(crate) fn step_kernels(&self) -> StepKernels {
+        if self.variant == Variant::SparseList { kernels::STEP_SPARSE } else { kernels::STEP }
     }
 
     /// The list, for steps by it.

@@ -6,12 +6,11 @@ use super::{
     order::{self, MortonOrder},
     structure::Query,
 };
-use crate::{Variant, cluster::StepQuery, grid::Grid, tracing::Step};
+use crate::{cluster::StepQuery, grid::Grid, tracing::Step};
 use nearfield_core::{
     Order, Quantities, Result, StepCost,
     maintenance::{Action, Motion},
 };
-use nearfield_kernels::kernels;
 
 impl Loaded {
     /// Enqueues forces, and what else is asked for, at the present positions, which belong to `step`.
@@ -53,23 +52,23 @@ impl Loaded {
     /// where `cluster` keeps no list. Gives the step whose positions the particles are at then.
     pub fn evaluate_and_step(&mut self, integrator: &Integrator, step: u64, before: u64) -> Result<u64> {
         self.prepare(step)?;
-        let Self { physics, state, structure, next_position, totalizer, .. } = self;
-        let listed = structure.clusters_mut().map(|clusters| (clusters.variant(), clusters.list_and_grid()));
-        let Some((variant, Some((list, grid)))) = listed else {
-            self.query(Quantities::FORCES)?;
-            return Ok(step);
-        };
-        let query = StepQuery {
-            physics,
-            state,
-            next: next_position,
-            integrator: integrator.layout(),
-            status: totalizer.status().ptr(),
-            kernels: if variant == Variant::SparseList { kernels::STEP_SPARSE } else { kernels::STEP },
-        };
-        let made = list.steps(query, grid, step, before - step)?;
-        self.account(made)?;
-        Ok(step + made)
+        loop {
+            let Self { physics, state, structure, next_position, totalizer, report, .. } = self;
+            let clusters = structure.clusters_mut().expect("only clusters step by lists");
+            let kernels = clusters.step_kernels();
+            let Some((list, grid)) = clusters.list_and_grid() else {
+                self.query(Quantities::FORCES)?;
+                return Ok(step);
+            };
+            let (integrator, status) = (integrator.layout(), totalizer.status().ptr());
+            let query = StepQuery { physics, state, next: next_position, integrator, status, kernels };
+            let made = list.steps(query, grid, step, before - step)?;
+            if made > 0 {
+                self.account(made)?;
+                return Ok(step + made);
+            }
+            clusters.settle(physics, state, report)?;
+        }
     }
 
     /// Books evaluations whose query has been enqueued.

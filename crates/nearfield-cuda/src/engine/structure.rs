@@ -119,6 +119,7 @@ impl Structure {
             }
             Self::Cells(grid) => by_candidates(Candidates::Cells(grid), plan, physics, state, results, energy),
             Self::Clusters(clusters) => {
+                clusters.settle(physics, state, report)?;
                 let scatters = clusters.scatters();
                 if scatters {
                     results.zero(plan.deterministic)?;

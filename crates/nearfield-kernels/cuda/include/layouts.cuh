@@ -435,7 +435,8 @@ static_assert(sizeof(Segment) == 16, "Segment differs between host and device");
 
 // What kernels tell each other and the host about a list.
 struct ClusterControl {
-    // The first step whose positions the list may not serve; all ones while none is known.
+    // The first step whose positions the list may not serve; all ones while none is known, zero where there was no
+    // room for the list.
     u64 rebuild_at;
     // The last step that was computed by the list.
     u64 done;

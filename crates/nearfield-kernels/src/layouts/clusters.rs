@@ -22,7 +22,8 @@ layouts! {
 
     /// What kernels tell each other and the host about a list.
     pub struct ClusterControl {
-        /// The first step whose positions the list may not serve; all ones while none is known.
+        /// The first step whose positions the list may not serve; all ones while none is known, zero where there was no
+        /// room for the list.
         pub rebuild_at: u64,
         /// The last step that was computed by the list.
         pub done: u64,
