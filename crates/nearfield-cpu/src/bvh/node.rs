@@ -100,6 +100,16 @@ impl Node {
         }
         mask
     }
+
+    /// Bit `l` is set when child `l` overlaps any of `queries`.
+    #[inline(always)]
+    pub fn overlap_any<const N: usize>(&self, queries: &[Aabb; N]) -> u32 {
+        let mut mask = 0;
+        for query in queries {
+            mask |= self.overlap(query);
+        }
+        mask
+    }
 }
 
 /// The smallest of sixteen numbers, none of them NaN, by halving: each step is one SIMD minimum.
