@@ -39,6 +39,8 @@ fn support(method: Method, device: &'static str) -> MethodSupport {
         Method::RtForces => ("boxes, point ray, scatter", "ORCS-forces (A)"),
         Method::RtPerse => ("boxes, point ray, advance", "ORCS-perse (A)"),
         Method::RtBoxes => ("boxes, point ray, gather", "custom AABB (B)"),
+        Method::RtSpheres => ("spheres, axis rays, gather", "spheres (B)"),
+        Method::RtSquares => ("squares, edge rays, gather", "double squares (B)"),
     };
     MethodSupport {
         method,

@@ -29,7 +29,7 @@ impl Loaded {
                 Structure::Brute => unsafe { grid::list(&**scene.gpu, all(scene), &query, list) },
                 // SAFETY: as above.
                 Structure::Cells(grid) => unsafe { grid::list(&**scene.gpu, Candidates::Cells(grid), &query, list) },
-                Structure::Boxes(bvh) | Structure::List(bvh, _) => bvh.list(scene, rows, images, list),
+                Structure::Bodies(bvh) | Structure::List(bvh, _) => bvh.list(scene, rows, images, list),
             }
         })?;
         Ok(&self.lister.as_ref().expect("it was just used").list)
@@ -46,7 +46,7 @@ impl Loaded {
                 Structure::Brute => unsafe { grid::count(&**scene.gpu, all(scene), &query, list) },
                 // SAFETY: as above.
                 Structure::Cells(grid) => unsafe { grid::count(&**scene.gpu, Candidates::Cells(grid), &query, list) },
-                Structure::Boxes(bvh) | Structure::List(bvh, _) => bvh.count(scene, rows, list),
+                Structure::Bodies(bvh) | Structure::List(bvh, _) => bvh.count(scene, rows, list),
             }
         })?;
         Ok(&self.lister.as_ref().expect("it was just used").list.count)
@@ -95,7 +95,7 @@ impl Loaded {
         let scene = physics.scene(state);
         match &mut lister.structure {
             // Without the skin that forces would want.
-            Structure::Boxes(bvh) | Structure::List(bvh, _) => bvh.update(Action::Build, &scene).map(drop)?,
+            Structure::Bodies(bvh) | Structure::List(bvh, _) => bvh.update(Action::Build, &scene).map(drop)?,
             structure => structure.update(Action::Build, &scene).map(drop)?,
         }
         body(lister, &state.id, &scene)

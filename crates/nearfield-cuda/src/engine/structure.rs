@@ -4,7 +4,7 @@ use super::{physics::Physics, results::Results, state::State, survey::Sample};
 use crate::{
     Gpu,
     grid::{self, Candidates, ForceQuery, Grid},
-    tracing::{Bvh, Outcome, Scene, Step, StoredList, Sums, Updated},
+    tracing::{Bvh, Outcome, Probe, Scene, Step, StoredList, Sums, Updated},
 };
 use nearfield_core::{Method, Plan, Report, Result, maintenance::Action};
 use nearfield_kernels::layouts;
@@ -26,8 +26,8 @@ pub(crate) enum Structure {
     Brute,
     /// Cells.
     Cells(Box<Grid>),
-    /// Boxes, traced for forces.
-    Boxes(Bvh),
+    /// Bodies, traced for forces.
+    Bodies(Bvh),
     /// Boxes, traced for a list.
     List(Bvh, StoredList),
 }
@@ -37,10 +37,15 @@ impl Structure {
         Ok(match plan.method {
             Method::Brute => Self::Brute,
             Method::Cell => Self::Cells(Box::new(Grid::new(gpu))),
-            Method::RtForces | Method::RtPerse | Method::RtBoxes => Self::Boxes(Bvh::new(gpu, plan.images)?),
-            Method::RtList => {
-                Self::List(Bvh::new(gpu, plan.images)?, StoredList::new(gpu, plan, &physics.sim_box, physics.largest))
+            Method::RtForces | Method::RtPerse | Method::RtBoxes => {
+                Self::Bodies(Bvh::new(gpu, Probe::Point, plan.images)?)
             }
+            Method::RtSpheres => Self::Bodies(Bvh::new(gpu, Probe::Axes, plan.images)?),
+            Method::RtSquares => Self::Bodies(Bvh::new(gpu, Probe::Edges, plan.images)?),
+            Method::RtList => Self::List(
+                Bvh::new(gpu, Probe::Point, plan.images)?,
+                StoredList::new(gpu, plan, &physics.sim_box, physics.largest),
+            ),
         })
     }
 
@@ -74,7 +79,7 @@ impl Structure {
                 unsafe { grid.build(particles.position, particles.n as usize, scene.law.variable != 0)? };
                 Ok(Updated { built: true, forced: false })
             }
-            Self::Boxes(bvh) => bvh.update(action, scene),
+            Self::Bodies(bvh) => bvh.update(action, scene),
             Self::List(bvh, list) => {
                 list.invalidate();
                 bvh.update(action, &Scene { skin: list.skin(), ..*scene })
@@ -91,10 +96,10 @@ impl Structure {
                 by_candidates(candidates, plan, physics, state, results, energy)
             }
             Self::Cells(grid) => by_candidates(Candidates::Cells(grid), plan, physics, state, results, energy),
-            Self::Boxes(bvh) if plan.method == Method::RtForces => {
+            Self::Bodies(bvh) if plan.method == Method::RtForces => {
                 scatter(bvh, Sums { exact: plan.deterministic, energy }, results, scene)
             }
-            Self::Boxes(bvh) => bvh.gather(scene, Sums { exact: plan.deterministic, energy }, results.layout()),
+            Self::Bodies(bvh) => bvh.gather(scene, Sums { exact: plan.deterministic, energy }, results.layout()),
             Self::List(bvh, list) => {
                 let sums = Sums { exact: plan.deterministic, energy };
                 let mut outcome = list.gather(bvh, scene, sums, results.layout(), plan.memory_budget, report)?;
@@ -111,9 +116,9 @@ impl Structure {
     /// Enqueues the forces and a step of all particles.
     ///
     /// # Panics
-    /// Where boxes are not traced for forces.
+    /// Where bodies are not traced for forces.
     pub fn advance(&self, plan: &Plan, scene: &Scene, results: layouts::Results, step: &Step) -> Result<()> {
-        let Self::Boxes(bvh) = self else { unreachable!("{} does not trace boxes for forces", plan.method) };
+        let Self::Bodies(bvh) = self else { unreachable!("{} does not trace for forces", plan.method) };
         bvh.advance(scene, plan.deterministic, results, step)
     }
 
@@ -122,7 +127,7 @@ impl Structure {
         match self {
             Self::Brute => 0,
             Self::Cells(grid) => grid.bytes(),
-            Self::Boxes(bvh) => bvh.bytes(),
+            Self::Bodies(bvh) => bvh.bytes(),
             Self::List(bvh, list) => bvh.bytes() + list.bytes(),
         }
     }

@@ -15,7 +15,7 @@ RAYGEN(points) {
     const u32 i = rt::ray_index();
     const float4 x = params.points[i];
     u32 p[rt::PAYLOAD_WORDS] = {};
-    rt::trace(params.handle, x.x, x.y, x.z, p);
+    rt::trace_point(params.handle, x.x, x.y, x.z, p);
     params.counts[i] = p[0];
     params.sums[i] = (u64)p[2] << 32 | p[1];
 }
