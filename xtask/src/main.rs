@@ -6,6 +6,7 @@
 
 mod checks;
 mod command;
+mod gpu_test;
 mod ptx;
 
 use std::{env, process::ExitCode, time::Instant};
@@ -43,6 +44,7 @@ const STEPS: &[Step] = &[
     Step { name: "doc", about: "documentation, warnings denied", ci: Some(&[]), run: Plain(checks::doc) },
     Step { name: "test", about: "all tests", ci: Some(&[]), run: Plain(checks::test) },
     Step { name: "smoke", about: "a short run of the melt example", ci: Some(&[]), run: Plain(checks::smoke) },
+    Step { name: "gpu-test", about: "a bundle for a machine with a GPU", ci: None, run: Plain(gpu_test::run_step) },
 ];
 
 fn main() -> ExitCode {

@@ -54,7 +54,7 @@ extern __thread Ray ray;
 
 namespace rt {
 
-const int PAYLOAD_WORDS = 20;
+const int PAYLOAD_WORDS = 16;
 
 inline unsigned ray_index() { return blockIdx.x * blockDim.x + threadIdx.x; }
 inline unsigned primitive_index() { return emulator::ray.primitive; }
@@ -71,9 +71,13 @@ template <unsigned I> void set_payload(unsigned value) {
     emulator::ray.payload[I] = value;
 }
 
-inline void trace(unsigned long long handle, float x, float y, float z, float dx, float dy, float dz, float tmax,
-                  unsigned (&p)[PAYLOAD_WORDS]) {
-    emulator::ray.payload = p;
+template <int WORDS>
+void trace(unsigned long long handle, float x, float y, float z, float dx, float dy, float dz, float tmax,
+           unsigned (&p)[WORDS]) {
+    static_assert(WORDS <= PAYLOAD_WORDS, "pipelines are made for so many");
+    unsigned words[PAYLOAD_WORDS] = {};
+    memcpy(words, p, sizeof(p));
+    emulator::ray.payload = words;
     const emulator::Segment segment = {{x, y, z}, {dx, dy, dz}, tmax};
     const char* error = emulator::ray.traverse(
         emulator::ray.scene, handle, &segment, [](unsigned primitive, unsigned instance, float distance) {
@@ -83,9 +87,10 @@ inline void trace(unsigned long long handle, float x, float y, float z, float dx
             emulator::ray.hit(nullptr);
         });
     if (error) emulator::machine().fail("ray %u: %s", ray_index(), error);
+    memcpy(p, words, sizeof(p));
 }
 
-inline void trace_point(unsigned long long handle, float x, float y, float z, unsigned (&p)[PAYLOAD_WORDS]) {
+template <int WORDS> void trace_point(unsigned long long handle, float x, float y, float z, unsigned (&p)[WORDS]) {
     trace(handle, x, y, z, 1.0f, 0.0f, 0.0f, 1e-16f, p);
 }
 

@@ -3,8 +3,8 @@
 use nearfield_conformance::cases::{self, Case};
 use nearfield_core::{ListKind, NeighborList, Radii, System, oracle};
 use nearfield_cuda::{
-    Buffer, Gpu,
-    grid::{self, Candidates, DeviceList, ForceQuery, Grid, ListQuery, Survey},
+    Buffer, DeviceList, Gpu,
+    grid::{self, Candidates, ForceQuery, Grid, ListQuery, Survey},
 };
 use nearfield_emulator::Emulator;
 use nearfield_kernels::{
@@ -138,7 +138,7 @@ impl Device {
         let mut list = DeviceList::new(&self.gpu);
         let query = ListQuery { law: self.law, space: self.space, id: self.id.ptr(), kind, images: true };
         // SAFETY: every input index is there once.
-        unsafe { list.fill(self.candidates(cells), &query) }.unwrap();
+        unsafe { grid::list(&*self.gpu, self.candidates(cells), &query, &mut list) }.unwrap();
         let image = |c: u8| [(c % 3) as i8 - 1, (c / 3 % 3) as i8 - 1, (c / 9) as i8 - 1];
         NeighborList {
             kind,

@@ -7,8 +7,8 @@
 
 namespace {
 
-// What takes a distance along an axis to that of the nearest image. Where ranges are at most half a box length, no other
-// image can be within range: |d + s| is then at least that half, by rounding too, and the predicate is strict.
+// What takes a distance along an axis to that of the nearest image. Where ranges are at most half a box length, no
+// other image can be within range: |d + s| is then at least that half, by rounding too, and the predicate is strict.
 struct NearestImage {
     float half[3], length[3];
 

@@ -69,14 +69,35 @@ pub const BRUTE_FORCES: ByForce<Kernel<GatherArgs>> = ByForce {
     exact_energy: Kernel::new("brute", "brute_exact_energy", 128),
 };
 
-/// Neighbours of each particle, counted.
-pub const CELL_LIST_COUNT: Kernel<ListArgs> = Kernel::new("lists", "cell_list_count", 128);
-/// Neighbours of each particle, listed.
-pub const CELL_LIST_FILL: Kernel<ListArgs> = Kernel::new("lists", "cell_list_fill", 128);
-/// Neighbours of each particle, counted by testing all pairs.
-pub const BRUTE_LIST_COUNT: Kernel<ListArgs> = Kernel::new("lists", "brute_list_count", 128);
-/// Neighbours of each particle, listed by testing all pairs.
-pub const BRUTE_LIST_FILL: Kernel<ListArgs> = Kernel::new("lists", "brute_list_fill", 128);
+/// Kernels that list neighbours; a warp for each [`CLUSTER`].
+#[derive(Clone, Copy)]
+pub struct ListKernels {
+    /// Entries of each row.
+    pub count: Kernel<ListArgs>,
+    /// The rows.
+    pub fill: Kernel<ListArgs>,
+}
+
+/// Lists from candidates in cells where one cutoff serves all pairs.
+pub const CELL_LIST: ListKernels = ListKernels {
+    count: Kernel::new("lists", "cell_list_count", 128),
+    fill: Kernel::new("lists", "cell_list_fill", 128),
+};
+/// Lists from candidates in cells where radii are per particle.
+pub const CELL_LIST_RADII: ListKernels = ListKernels {
+    count: Kernel::new("lists", "cell_list_count_radii", 128),
+    fill: Kernel::new("lists", "cell_list_fill_radii", 128),
+};
+/// Lists by testing all pairs where one cutoff serves all.
+pub const BRUTE_LIST: ListKernels = ListKernels {
+    count: Kernel::new("lists", "brute_list_count", 128),
+    fill: Kernel::new("lists", "brute_list_fill", 128),
+};
+/// Lists by testing all pairs where radii are per particle.
+pub const BRUTE_LIST_RADII: ListKernels = ListKernels {
+    count: Kernel::new("lists", "brute_list_count_radii", 128),
+    fill: Kernel::new("lists", "brute_list_fill_radii", 128),
+};
 
 /// Boxes around particles and ghosts.
 pub const FIT_BOXES: Kernel<BoxesArgs> = Kernel::new("boxes", "fit_boxes", 256);
@@ -103,8 +124,8 @@ pub const ROWS: ByForce<Kernel<RowsArgs>> = ByForce {
 /// Threads that share a row of [`ROWS`].
 pub const ROWS_LANES: u64 = 8;
 
-/// Words that rays carry, as in `raytracing.cuh`.
-pub const PAYLOAD_WORDS: u32 = 20;
+/// Most words that a ray carries, as in `raytracing.cuh`.
+pub const PAYLOAD_WORDS: u32 = 16;
 
 const fn program<A: crate::Layout>(module: &'static str, name: &'static str) -> RayProgram<A> {
     RayProgram::new(module, Primitive::Box, name)

@@ -24,8 +24,11 @@ enum Suite {
 #[derive(Parser, Debug)]
 struct Arguments {
     /// What to run.
-    #[arg(long, value_enum, required = true)]
+    #[arg(long, value_enum, required_unless_present = "quick")]
     suite: Vec<Suite>,
+    /// The smallest melt and list, a few seconds, as JSON lines.
+    #[arg(long)]
+    quick: bool,
     /// Numbers of particles; the suite's own by default.
     #[arg(long, value_delimiter = ',')]
     n: Vec<usize>,
@@ -38,7 +41,7 @@ struct Arguments {
     /// Seconds to spend on each measurement.
     #[arg(long, default_value_t = 0.4)]
     seconds: f64,
-    /// Leave out what a first step shows to take longer than this for one step, in seconds.
+    /// Where one evaluation of the forces takes longer than this, in seconds, it is the measurement.
     #[arg(long, default_value_t = 30.0)]
     patience: f64,
     /// Seconds after which no further measurement begins.
@@ -56,7 +59,12 @@ struct Arguments {
 }
 
 fn main() {
-    let arguments = Arguments::parse();
+    let mut arguments = Arguments::parse();
+    if arguments.quick {
+        arguments.suite = vec![Suite::Search, Suite::Melt];
+        arguments.n = vec![32_000];
+        arguments.seconds = 0.1;
+    }
     let engine = match CudaEngine::new(arguments.device) {
         Ok(engine) => engine,
         Err(reason) => {
@@ -64,7 +72,9 @@ fn main() {
             return;
         }
     };
-    println!("{}", engine.device());
+    if !arguments.quick {
+        println!("{}", engine.device());
+    }
     let mut bench = Bench::new(engine, &arguments);
     for suite in &arguments.suite {
         match suite {

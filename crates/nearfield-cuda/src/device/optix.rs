@@ -111,6 +111,14 @@ impl RayTracing for Optix {
     }
 }
 
+impl Drop for Optix {
+    fn drop(&mut self) {
+        // Pipelines, modules and the context are destroyed in the CUDA context that is current, on whatever thread this
+        // is. A device that fails here has failed before and says so elsewhere.
+        let _ = self.device.bind();
+    }
+}
+
 impl Launchable {
     fn new(
         context: &Arc<DeviceContext>,

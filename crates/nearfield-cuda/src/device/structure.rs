@@ -106,6 +106,13 @@ impl AccelerationStructure for OptixStructure {
     }
 }
 
+impl Drop for OptixStructure {
+    fn drop(&mut self) {
+        // As for the context, whose last owner this may be.
+        let _ = self.device.bind();
+    }
+}
+
 /// The driver's description of bodies. Programs of built-in ones must run once for each: they count what they see.
 fn input(bodies: Bodies, n: u32) -> BuildInput {
     let any_hit = AnyHit::OncePerPrimitive;

@@ -27,25 +27,24 @@ pub(crate) enum Structure {
     /// Cells.
     Cells(Box<Grid>),
     /// Bodies, traced for forces.
-    Bodies(Bvh),
+    Bodies(Box<Bvh>),
     /// Boxes, traced for a list.
-    List(Bvh, StoredList),
+    List(Box<Bvh>, Box<StoredList>),
 }
 
 impl Structure {
     pub fn new(gpu: &Arc<dyn Gpu>, plan: &Plan, physics: &Physics) -> Result<Self> {
+        let bvh = |probe| Bvh::new(gpu, probe, plan.images).map(Box::new);
         Ok(match plan.method {
             Method::Brute => Self::Brute,
             Method::Cell => Self::Cells(Box::new(Grid::new(gpu))),
-            Method::RtForces | Method::RtPerse | Method::RtBoxes => {
-                Self::Bodies(Bvh::new(gpu, Probe::Point, plan.images)?)
+            Method::RtForces | Method::RtPerse | Method::RtBoxes => Self::Bodies(bvh(Probe::Point)?),
+            Method::RtSpheres => Self::Bodies(bvh(Probe::Axes)?),
+            Method::RtSquares => Self::Bodies(bvh(Probe::Edges)?),
+            Method::RtList => {
+                let list = StoredList::new(gpu, plan, &physics.sim_box, physics.largest);
+                Self::List(bvh(Probe::Point)?, Box::new(list))
             }
-            Method::RtSpheres => Self::Bodies(Bvh::new(gpu, Probe::Axes, plan.images)?),
-            Method::RtSquares => Self::Bodies(Bvh::new(gpu, Probe::Edges, plan.images)?),
-            Method::RtList => Self::List(
-                Bvh::new(gpu, Probe::Point, plan.images)?,
-                StoredList::new(gpu, plan, &physics.sim_box, physics.largest),
-            ),
         })
     }
 

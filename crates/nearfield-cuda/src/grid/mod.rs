@@ -4,6 +4,7 @@ mod bulk;
 mod classes;
 mod plan;
 mod query;
+mod width;
 
 pub use plan::{CellPlan, Survey};
 pub use query::{Candidates, ForceQuery, ListQuery, count, forces, list};

@@ -1,12 +1,12 @@
 //! Size and number of the cells of each class.
 
-use super::classes::Class;
-use super::{bulk::Bulk, classes};
+use super::{
+    bulk::Bulk,
+    classes::{self, Class},
+    width::pencil_width,
+};
 use nearfield_core::SimBox;
 use nearfield_kernels::{Float4, layouts::CellClass};
-
-/// Particles to a cube of the width of a pencil, at the density they see.
-const OCCUPANCY: f64 = 8.0;
 
 /// Cells along x to the width of a pencil.
 const CELLS_PER_WIDTH: f64 = 4.0;
@@ -74,7 +74,7 @@ fn slack(bulk: &Bulk, sim_box: &SimBox) -> f32 {
 
 fn lay_out(class: &Class, bulk: &Bulk, first_cell: usize) -> CellClass {
     let most = CELLS_PER_PARTICLE * class.n + LEAST_CELLS;
-    let mut width = pencil_width(class.n * bulk.clustering / OCCUPANCY, bulk.length);
+    let mut width = pencil_width(class.n * bulk.clustering, bulk.length, f64::from(class.largest));
     let along = |width: f64| {
         let n = |length: f64, cell: f64| (length / cell).floor().clamp(1.0, MOST_ALONG);
         let [x, y, z] = bulk.length;
@@ -97,22 +97,6 @@ fn lay_out(class: &Class, bulk: &Bulk, first_cell: usize) -> CellClass {
     }
 }
 
-/// The width w for which a box of these lengths holds `cubes` cubes of w; axes shorter than w count as w.
-fn pencil_width(cubes: f64, lengths: [f64; 3]) -> f64 {
-    let mut sorted = lengths;
-    sorted.sort_unstable_by(f64::total_cmp);
-    let [a, b, c] = sorted;
-    let (by_volume, by_area, by_length) = ((a * b * c / cubes).cbrt(), (b * c / cubes).sqrt(), c / cubes);
-    let width = if by_volume <= a {
-        by_volume
-    } else if by_area <= b {
-        by_area
-    } else {
-        by_length
-    };
-    if width > 0.0 && width.is_finite() { width } else { f64::MAX }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -131,6 +115,16 @@ mod tests {
                     assert!(cells.per_length.iter().chain(&cells.width).all(|x| x.is_finite()), "{cells:?}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn points_on_a_line_have_cells_along_it() {
+        for axis in 0..3 {
+            let mut bulk = Bulk { n: 1_000_000, lo: [0.0; 3], length: [0.0; 3], clustering: 1.0 };
+            bulk.length[axis] = 1000.0;
+            let cells = lay_out(&classes::single(bulk.n, 1.0)[0], &bulk, 0);
+            assert!(cells.n[axis] >= 100_000, "{cells:?}");
         }
     }
 

@@ -5,7 +5,7 @@ use crate::{DeviceList, Gpu, gpu::launch};
 use nearfield_core::{ListKind, Result};
 use nearfield_kernels::{
     Float4, Ptr,
-    kernels::{self, CELL_FORCES, CLUSTER},
+    kernels::{self, CELL_FORCES, CLUSTER, ListKernels},
     layouts::{self, Box3, GatherArgs, Law, ListArgs, Results},
 };
 
@@ -125,10 +125,7 @@ pub struct ListQuery {
 /// As [`Gpu::allocate`] and [`Gpu::launch`].
 pub unsafe fn count(gpu: &dyn Gpu, candidates: Candidates, query: &ListQuery, list: &mut DeviceList) -> Result<()> {
     list.start(candidates.n())?;
-    let kernel = match candidates {
-        Candidates::Cells(_) => kernels::CELL_LIST_COUNT,
-        Candidates::All { .. } => kernels::BRUTE_LIST_COUNT,
-    };
+    let kernel = list_kernels(candidates, query).count;
     // SAFETY: the caller's promise, and a count for each row.
     unsafe { launch(gpu, kernel, candidates.threads(), &arguments(candidates, query, list)) }
 }
@@ -145,12 +142,18 @@ pub unsafe fn list(gpu: &dyn Gpu, candidates: Candidates, query: &ListQuery, lis
     unsafe { count(gpu, candidates, query, list)? };
     let entries = list.place_rows()?;
     list.make_room(entries, query.images)?;
-    let kernel = match candidates {
-        Candidates::Cells(_) => kernels::CELL_LIST_FILL,
-        Candidates::All { .. } => kernels::BRUTE_LIST_FILL,
-    };
+    let kernel = list_kernels(candidates, query).fill;
     // SAFETY: the same pairs are found again, for which there is room.
     unsafe { launch(gpu, kernel, candidates.threads(), &arguments(candidates, query, list)) }
+}
+
+fn list_kernels(candidates: Candidates, query: &ListQuery) -> ListKernels {
+    match (candidates, query.law.variable != 0) {
+        (Candidates::Cells(_), false) => kernels::CELL_LIST,
+        (Candidates::Cells(_), true) => kernels::CELL_LIST_RADII,
+        (Candidates::All { .. }, false) => kernels::BRUTE_LIST,
+        (Candidates::All { .. }, true) => kernels::BRUTE_LIST_RADII,
+    }
 }
 
 fn arguments(candidates: Candidates, query: &ListQuery, list: &DeviceList) -> ListArgs {

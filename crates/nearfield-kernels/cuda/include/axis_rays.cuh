@@ -11,13 +11,15 @@
 #include "rays.cuh"
 
 struct AxisRays {
-    __device__ static void send(const Rays& rays, const float4& x, const Shift& s, u32 (&payload)[rt::PAYLOAD_WORDS]) {
+    template <int WORDS>
+    __device__ static void send(const Rays& rays, const float4& x, const Shift& s, u32 (&payload)[WORDS]) {
         const Geometry& g = rays.geometry;
         const float4 p = place(g, x);
+        const u32 image = payload[PAYLOAD_IMAGE];
 #pragma unroll 1
         for (u32 axis = 0; axis < 3; ++axis) {
             const float dx = axis == 0, dy = axis == 1, dz = axis == 2;
-            payload[PAYLOAD_RAY] = axis;
+            payload[PAYLOAD_IMAGE] = image | axis << RAY_NUMBER_SHIFT;
             rt::trace(rays.handle, p.x - s.x + dx * g.start, p.y - s.y + dy * g.start, p.z - s.z + dz * g.start, dx, dy,
                       dz, g.length, payload);
         }
@@ -31,7 +33,7 @@ struct AxisRays {
         const float along = nearest == 0 ? d.x : nearest == 1 ? d.y : d.z;
         // A ray enters before it passes the centre.
         const bool enters = rt::hit_distance() < along - rays.geometry.start;
-        m.near = m.near && enters && nearest == rt::payload<PAYLOAD_RAY>();
+        m.near = m.near && enters && nearest == rt::payload<PAYLOAD_IMAGE>() >> RAY_NUMBER_SHIFT;
         return m;
     }
 };

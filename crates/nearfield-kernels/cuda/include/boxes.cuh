@@ -4,10 +4,12 @@
 
 #include "predicate.cuh"
 
-// Half the width of the box around a particle: its radius, rounded outwards as nearfield_core's conservative_range.
+// Half the width of the box around a particle: its radius, rounded outwards as nearfield_core's conservative_range. Along
+// open axes a particle may be far outside of the box, where corners are rounded more coarsely than `slack` knows.
 __device__ inline float half_width(const BoxesArgs& a, const float4& x) {
     const float radius = (a.cutoff > 0.0f ? a.cutoff : x.w) + a.skin;
-    return radius * 1.00000095367431640625f + a.slack;
+    const float farthest = fmaxf(fmaxf(fabsf(x.x), fabsf(x.y)), fabsf(x.z));
+    return radius * 1.00000095367431640625f + a.slack + farthest * 4.76837158203125e-7f;
 }
 
 __device__ inline u32 faces_of_axis(const Box3& space, int axis, float x, float reach) {

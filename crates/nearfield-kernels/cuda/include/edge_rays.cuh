@@ -11,12 +11,14 @@
 #include "rays.cuh"
 
 struct EdgeRays {
-    __device__ static void send(const Rays& rays, const float4& x, const Shift& s, u32 (&payload)[rt::PAYLOAD_WORDS]) {
+    template <int WORDS>
+    __device__ static void send(const Rays& rays, const float4& x, const Shift& s, u32 (&payload)[WORDS]) {
         const Geometry& g = rays.geometry;
         const float4 p = place(g, x);
+        const u32 image = payload[PAYLOAD_IMAGE];
 #pragma unroll 1
         for (u32 edge = 0; edge < 4; ++edge) {
-            payload[PAYLOAD_RAY] = edge;
+            payload[PAYLOAD_IMAGE] = image | edge << RAY_NUMBER_SHIFT;
             rt::trace(rays.handle, p.x - s.x + g.start, p.y - s.y + (edge & 1 ? -g.offset : g.offset),
                       p.z - s.z + (edge & 2 ? -g.offset : g.offset), 1.0f, 0.0f, 0.0f, g.length, payload);
         }
@@ -33,7 +35,7 @@ struct EdgeRays {
         const float z = (below_z ? -rays.geometry.offset : rays.geometry.offset) - d.z;
         const u32 triangle = z > y;
         m.near = m.near && primitive % 4 == 2 * square + triangle &&
-                 rt::payload<PAYLOAD_RAY>() == below_y + 2 * below_z;
+                 rt::payload<PAYLOAD_IMAGE>() >> RAY_NUMBER_SHIFT == below_y + 2 * below_z;
         return m;
     }
 };

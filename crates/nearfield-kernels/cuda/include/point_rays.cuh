@@ -9,7 +9,8 @@
 #include "rays.cuh"
 
 struct PointRays {
-    __device__ static void send(const Rays& rays, const float4& x, const Shift& s, u32 (&payload)[rt::PAYLOAD_WORDS]) {
+    template <int WORDS>
+    __device__ static void send(const Rays& rays, const float4& x, const Shift& s, u32 (&payload)[WORDS]) {
         rt::trace_point(rays.handle, x.x - s.x, x.y - s.y, x.z - s.z, payload);
     }
 

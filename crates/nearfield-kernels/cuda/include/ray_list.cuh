@@ -18,7 +18,7 @@ __device__ inline void put(const ListRays& list, u64 at, u32 index, u32 image) {
 
 template <class Probe, bool FILL> __device__ inline void list_rays(const ListRays& list) {
     const u32 i = list.rays.first + rt::ray_index();
-    u32 payload[rt::PAYLOAD_WORDS] = {};
+    u32 payload[PAYLOAD_CONSUMER + 1] = {};
     send_rays<Probe>(list.rays, i, payload);
     if (!FILL && !list.rays.law.variable) list.count[number_of(list, i)] = payload[PAYLOAD_CONSUMER];
 }

@@ -14,8 +14,8 @@ enum View { GAMMA, INSTANCES, GHOSTS };
 #define PAYLOAD_POSITION 0
 #define PAYLOAD_IMAGE 4
 #define PAYLOAD_CONSUMER 5
-// Which of its particle's rays it is, where there are several.
-#define PAYLOAD_RAY (rt::PAYLOAD_WORDS - 1)
+// In the word of the image, above its number: which of its particle's rays it is, where there are several.
+#define RAY_NUMBER_SHIFT 8
 
 // Whether images of particles -1, 0 and +1 boxes away along an axis are within reach, as bits 0 to 2.
 __device__ inline u32 reach(float x, float near_lo, float near_hi) {
@@ -23,7 +23,7 @@ __device__ inline u32 reach(float x, float near_lo, float near_hi) {
 }
 
 // Sends the rays of a particle. Gamma rays (paper A, section 3.3) start where the particle is seen from the image.
-template <class Probe> __device__ inline void send_rays(const Rays& rays, u32 i, u32 (&payload)[rt::PAYLOAD_WORDS]) {
+template <class Probe, int WORDS> __device__ inline void send_rays(const Rays& rays, u32 i, u32 (&payload)[WORDS]) {
     const float4 x = rays.particles.position[i];
     payload[PAYLOAD_POSITION] = __float_as_uint(x.x);
     payload[PAYLOAD_POSITION + 1] = __float_as_uint(x.y);
@@ -63,7 +63,7 @@ __device__ inline Meeting meet_body(const Rays& rays, u32 body) {
     m.j = body;
     m.image = HOME_IMAGE;
     if (rays.view == GAMMA) {
-        m.image = rt::payload<PAYLOAD_IMAGE>();
+        m.image = rt::payload<PAYLOAD_IMAGE>() & ((1u << RAY_NUMBER_SHIFT) - 1);
     } else if (rays.view == INSTANCES) {
         m.image = rays.image[rt::instance_index()];
     } else if (m.j >= rays.particles.n) {
@@ -76,7 +76,9 @@ __device__ inline Meeting meet_body(const Rays& rays, u32 body) {
                        __uint_as_float(rt::payload<PAYLOAD_POSITION + 2>()),
                        __uint_as_float(rt::payload<PAYLOAD_POSITION + 3>()));
     m.xj = rays.particles.position[m.j];
-    m.d = displacement(m.xi, m.xj, shift_of(rays.space, m.image));
+    // Most pairs are seen in the box itself.
+    const Shift s = m.image == HOME_IMAGE ? Shift{0.0f, 0.0f, 0.0f} : shift_of(rays.space, m.image);
+    m.d = displacement(m.xi, m.xj, s);
     m.r2 = squared_length(m.d.x, m.d.y, m.d.z);
     m.range = (rays.law.variable ? fmaxf(m.xi.w, m.xj.w) : rays.law.cutoff) + rays.skin;
     m.near = m.r2 < m.range * m.range && !(m.j == m.i && m.image == HOME_IMAGE);

@@ -1,0 +1,61 @@
+//! Neighbours of more particles than brute force on the host can manage.
+
+use crate::loaded;
+use nearfield_conformance::cases;
+use nearfield_core::{
+    Boundary::{Open, Periodic, Wall},
+    Engine, ListKind, ListRequest, Method, PerParticle, Plan, Quantities, Radii, System,
+    oracle::{self, Pair},
+};
+use nearfield_cpu::CpuEngine;
+use rand::SeedableRng;
+use rand_distr::{Distribution, LogNormal};
+use rand_pcg::Pcg64Mcg;
+use std::sync::LazyLock;
+
+const N: usize = 50_000;
+
+/// Systems with the pairs that the CPU engine finds in them.
+static SYSTEMS: LazyLock<Vec<(System, Vec<Pair>)>> = LazyLock::new(|| {
+    let mut systems = Vec::new();
+    for (boundary, seed) in [([Periodic; 3], 1), ([Wall; 3], 2), ([Periodic, Wall, Open], 3)] {
+        let sim_box = cases::cube(40.0, boundary);
+        let law = LogNormal::new(0.0f32, 0.5).expect("valid parameters");
+        let mut rng = Pcg64Mcg::seed_from_u64(seed);
+        let radii = (0..N).map(|_| law.sample(&mut rng).min(8.0)).collect();
+        for radii in [Radii::Uniform(1.7), Radii::PerParticle(radii)] {
+            systems.push(cases::soft(sim_box, cases::uniform(N, &sim_box, seed), radii));
+        }
+    }
+    let with_pairs = |system: System| {
+        let mut cpu = CpuEngine::new();
+        cpu.load(&system, &Plan::new(Method::Cell)).expect("the CPU engine takes it");
+        let pairs = pairs(&mut cpu);
+        (system, pairs)
+    };
+    systems.into_iter().map(with_pairs).collect()
+});
+
+fn pairs(engine: &mut dyn Engine) -> Vec<Pair> {
+    let request = ListRequest { shifts: true, ..ListRequest::new(ListKind::Full) };
+    oracle::canonical(&engine.neighbor_list(request).expect("a list"))
+}
+
+/// Indices, images and counts, in periodic, closed and mixed boxes, of one cutoff and of radii.
+pub fn pairs_are_those_of_the_cpu(plan: &Plan) {
+    for (system, expected) in SYSTEMS.iter() {
+        let Some(mut engine) = loaded(system, plan) else { continue };
+        let found = pairs(&mut engine);
+        let boundary = system.sim_box.boundary();
+        assert!(found == *expected, "{plan:?}, {boundary:?}: {} pairs for {}", found.len(), expected.len());
+        let totals = engine.evaluate(Quantities::ALL).expect("an evaluation");
+        let mut counted = PerParticle::default();
+        engine.per_particle(&mut counted).expect("a copy");
+        let mut counts = vec![0; N];
+        for pair in expected {
+            counts[pair.i as usize] += 1;
+            counts[pair.j as usize] += 1;
+        }
+        assert!(counted.neighbors == counts && totals.pairs == expected.len() as u64, "{plan:?}, {boundary:?}");
+    }
+}
