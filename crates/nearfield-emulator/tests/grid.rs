@@ -153,7 +153,7 @@ impl Device {
 fn systems() -> Vec<Case> {
     let mut all = cases::all();
     all.extend((0..20).map(|seed| Case { name: format!("random {seed}"), system: cases::random(seed) }));
-    all.retain(|case| case.system.particles.len() > 0);
+    all.retain(|case| !case.system.particles.is_empty());
     all
 }
 

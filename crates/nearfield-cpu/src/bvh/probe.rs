@@ -11,7 +11,7 @@
 //!
 //! Bodies are solid here, since boxes around them are what a tree holds. The rays of a particle are traced together
 //! and the predicate decides, so that it does not matter how many of them meet a body. On a GPU bodies are shells of
-//! built-in primitives, which takes more care: see docs/methods.md.
+//! built-in primitives, which takes more care: see docs/rays.md.
 
 use super::node::Aabb;
 

@@ -51,7 +51,7 @@ impl Probe {
     ///
     /// A ray that is to meet a body passes at least one margin inside of its rim, begins and ends at least one margin
     /// away from it. A third of the margin is more than all roundings of coordinates come to, ten of numbers up to the
-    /// extent; the rest is for the intersection, of whose rounding devices promise nothing. Proof in docs/methods.md.
+    /// extent; the rest is for the intersection, of whose rounding devices promise nothing. Proof in docs/rays.md.
     pub(super) fn geometry(self, scene: &Scene) -> Geometry {
         let reach = scene.largest + scene.skin;
         let (lo, hi) = bounds(scene);

@@ -3,7 +3,7 @@
 // The sphere around j has the radius √(2/3) r, and a margin. The axis nearest to j is that on which the displacement is
 // largest; its ray passes the centre within √(2/3) r. It begins outside of every sphere around a neighbour and ends
 // behind the first crossing of each, by a margin: so it enters the sphere exactly once, and that hit counts. All others
-// do not: of other rays, and of rays that leave a sphere. Proof in docs/methods.md.
+// do not: of other rays, and of rays that leave a sphere. Proof in docs/rays.md.
 
 #pragma once
 
