@@ -38,8 +38,10 @@ impl Bodies {
     /// Fits them to the particles and ghosts of `arguments`, and gives them and their number.
     pub fn fit(&mut self, scene: &Scene, probe: Probe, arguments: &BoxesArgs) -> Result<(gpu::Bodies, u32)> {
         let n = arguments.n as usize + arguments.n_ghosts as usize;
-        let (arguments, mut body) =
-            (*arguments, BodiesArgs { geometry: probe.geometry(scene), ..BodiesArgs::default() });
+        let (arguments, mut body) = (
+            *arguments,
+            BodiesArgs { geometry: probe.geometry(scene.reach(), scene.sim_box), ..BodiesArgs::default() },
+        );
         match self {
             Self::Boxes(boxes) => {
                 resize(boxes, n, &arguments)?;

@@ -116,7 +116,7 @@ impl Bvh {
             law: scene.law,
             space: scene.space,
             particles: scene.particles,
-            geometry: self.probe.geometry(scene),
+            geometry: self.probe.geometry(scene.reach(), scene.sim_box),
             handle: self.instances.as_ref().unwrap_or(&self.structure).handle(),
             ghost: self.ghosts.as_ref().map_or(Ptr::NULL, Ghosts::list),
             view: view::number(self.images),
