@@ -11,6 +11,7 @@ mod images;
 mod node;
 mod order;
 mod probe;
+mod ray_cast;
 mod sort;
 #[cfg(test)]
 mod tests;
@@ -24,6 +25,7 @@ use node::Aabb;
 pub(crate) use order::CurveOrder;
 pub use probe::Probe;
 use pulp::{Arch, Simd, WithSimd};
+pub use ray_cast::Ray;
 use rayon::prelude::*;
 use std::ops::Range;
 use tree::{Tree, half_width};

@@ -108,10 +108,22 @@ impl Tree {
         self.levels.last().map_or(Aabb::EMPTY, |root| root[0].bounds())
     }
 
+    /// The level of the root, where there is one.
+    #[inline(always)]
+    pub fn top(&self) -> Option<usize> {
+        self.levels.len().checked_sub(1)
+    }
+
+    /// A node of a level.
+    #[inline(always)]
+    pub fn node(&self, level: usize, index: usize) -> &Node {
+        &self.levels[level][index]
+    }
+
     /// Calls `visit` once with each leaf whose box overlaps any of the boxes around `rays`, in ascending order.
     #[inline(always)]
     pub fn trace<const N: usize>(&self, rays: &[Aabb; N], mut visit: impl FnMut(usize)) {
-        let Some(top) = self.levels.len().checked_sub(1) else { return };
+        let Some(top) = self.top() else { return };
         // For each level on the way down: the node, and which of its children are still to be visited.
         let mut node = [0; MAX_LEVELS];
         let mut pending = [0; MAX_LEVELS];

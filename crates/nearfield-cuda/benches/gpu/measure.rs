@@ -79,9 +79,13 @@ impl Bench {
             step += steps;
             Ok(start.elapsed().as_secs_f64() / steps as f64)
         };
-        let start = Instant::now();
-        self.engine.evaluate(Quantities::FORCES)?;
-        let evaluation = start.elapsed().as_secs_f64();
+        let mut evaluation = f64::INFINITY;
+        // The first also compiles ray-tracing programs. By `advance`, so that overlaps are allowed where they are.
+        for _ in 0..2 {
+            let start = Instant::now();
+            self.engine.advance(&case.dynamics, 0, 0, Quantities::FORCES)?;
+            evaluation = evaluation.min(start.elapsed().as_secs_f64());
+        }
         if evaluation > self.patience {
             return Ok(Some(json!({
                 "one_evaluation": true,
