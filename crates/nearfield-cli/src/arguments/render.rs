@@ -28,8 +28,8 @@ and the rays of the particle that find them. Drawing takes the CPU only.";
 
 #[derive(Args)]
 pub struct RenderArguments {
-    /// Particles: .xyz, .extxyz, .data, .lmp, .gro, - for extended XYZ on standard input, or a configuration file (.toml)
-    /// for its start.
+    /// Particles: .xyz, .extxyz, .data, .lmp, .gro, - for extended XYZ on standard input, or a configuration file
+    /// (.toml) for its start.
     pub input: PathBuf,
     /// Picture to write: .png. With --frames, frame.png stands for frame_0001.png and so on.
     #[arg(short, long, value_name = "PICTURE.png")]
