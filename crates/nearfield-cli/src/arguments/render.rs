@@ -19,8 +19,8 @@ Examples:
   ffmpeg -framerate 25 -i film/frame_%04d.png -pix_fmt yuv420p film.mp4
 
 Particles are shaded spheres that touch their usual nearest neighbour. With --focus N the camera looks at particle N \
-(counted from 0): it is orange, its neighbours are blue, through periodic faces too (there where they are within range, \
-and paler where they are in the box), all others are grey, and those that would hide it are left out.
+(counted from 0): it is orange, its neighbours are blue, through periodic faces too (there where they are within \
+range, and paler where they are in the box), all others are grey, and those that would hide it are left out.
 
 With --as the picture shows what the ray-tracing methods work with, for the cutoff C: spheres of radius C*sqrt(2/3) \
 (rt-spheres), squares of width C (rt-squares), boxes of half width C (rt-boxes); with --focus those of the neighbours, \
