@@ -54,6 +54,8 @@ named_enum! {
         RtPerse = "rt-perse",
         /// BVH over boxes, point ray, gather. Custom AABB of paper B; one radius only.
         RtBoxes = "rt-boxes",
+        /// Grid of clusters, cluster pairs, list. The fastest for most systems.
+        Cluster = "cluster",
     }
 }
 
@@ -65,7 +67,7 @@ impl Method {
 
     /// Whether it stores a neighbour list, so that a skin means something.
     pub fn uses_list(self) -> bool {
-        matches!(self, Self::RtList)
+        matches!(self, Self::RtList | Self::Cluster)
     }
 
     /// Whether particles may differ in search radius. A point ray from i finds the j whose box holds i, that is

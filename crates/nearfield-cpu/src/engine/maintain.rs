@@ -20,6 +20,7 @@ impl Index {
         match plan.method {
             Method::Brute => Self::Brute(Brute::default()),
             Method::Cell => Self::Grid(Grid::default()),
+            Method::Cluster => unreachable!("refused by supports"),
             Method::RtList | Method::RtForces | Method::RtPerse | Method::RtBoxes => {
                 Self::Bvh(Box::new(Bvh::new(plan.images)))
             }
