@@ -58,18 +58,20 @@ named_enum! {
         RtSpheres = "rt-spheres",
         /// BVH over squares, four edge rays, gather. Double squares of paper B; one radius only.
         RtSquares = "rt-squares",
+        /// Grid of clusters, cluster pairs, list. The fastest for most systems.
+        Cluster = "cluster",
     }
 }
 
 impl Method {
     /// Whether it works on a BVH, so that images and maintenance mean something.
     pub fn uses_bvh(self) -> bool {
-        !matches!(self, Self::Brute | Self::Cell)
+        !matches!(self, Self::Brute | Self::Cell | Self::Cluster)
     }
 
     /// Whether it stores a neighbour list, so that a skin means something.
     pub fn uses_list(self) -> bool {
-        matches!(self, Self::RtList)
+        matches!(self, Self::RtList | Self::Cluster)
     }
 
     /// Whether particles may differ in search radius. A point ray from i finds the j whose box holds i, that is

@@ -3,9 +3,9 @@
 use crate::{
     ByForce, Kernel, Primitive, RayProgram,
     layouts::{
-        AdvanceRays, BodiesArgs, BoundsArgs, BoxesArgs, FinishExactArgs, ForceRays, GatherArgs, IntegrateArgs,
-        ListArgs, ListRays, MortonArgs, MotionArgs, PermuteArgs, RescaleArgs, RowsArgs, SampleArgs, ScanArgs, SortArgs,
-        TotalsArgs,
+        AdvanceRays, BodiesArgs, BoundsArgs, BoxesArgs, ClusterListArgs, ClusterStepArgs, ClustersMovedArgs,
+        FinishExactArgs, ForceRays, GatherArgs, IntegrateArgs, ListArgs, ListRays, ListedArgs, MortonArgs, MotionArgs,
+        PermuteArgs, RescaleArgs, RowsArgs, SampleArgs, ScanArgs, SortArgs, TotalsArgs,
     },
 };
 
@@ -57,6 +57,56 @@ pub const CELL_FORCES: ByForce<Kernel<GatherArgs>> = ByForce {
     energy: Kernel::new("cell_forces", "cell_any_energy", 128),
     exact: Kernel::new("cell_forces", "cell_exact", 128),
     exact_energy: Kernel::new("cell_forces", "cell_exact_energy", 128),
+};
+
+/// Forces from candidates in cells, each pair found once and added to zeros, but for sums that do not depend on order.
+pub const CLUSTER_FORCES: ByForce<Kernel<GatherArgs>> = ByForce {
+    uniform_lj: Kernel::new("cluster_forces", "cluster_uniform", 128),
+    scaled_lj: Kernel::new("cluster_forces", "cluster_scaled", 128),
+    fast: Kernel::new("cluster_forces", "cluster_any", 128),
+    energy: Kernel::new("cluster_forces", "cluster_any_energy", 128),
+    ..CELL_FORCES
+};
+
+/// Lists of what is near each [`CLUSTER`].
+pub const LIST_CLUSTERS: Kernel<ClusterListArgs> = Kernel::new("cluster_list", "list_clusters", 128);
+/// Most chunks of a segment of these lists but the last.
+pub const SEGMENT: usize = 15;
+/// Whether lists serve the present positions.
+pub const CLUSTERS_MOVED: Kernel<ClustersMovedArgs> = Kernel::new("cluster_list", "clusters_moved", 256);
+
+/// Forces from lists of clusters, where one cutoff serves all pairs; a warp for each [`CLUSTER`].
+pub const LISTED_FORCES: ByForce<Kernel<ListedArgs>> = ByForce {
+    uniform_lj: Kernel::new("listed_forces", "listed_uniform", 128),
+    scaled_lj: Kernel::new("listed_forces", "listed_any", 128),
+    fast: Kernel::new("listed_forces", "listed_any", 128),
+    energy: Kernel::new("listed_forces", "listed_any_energy", 128),
+    exact: Kernel::new("listed_forces", "listed_exact", 128),
+    exact_energy: Kernel::new("listed_forces", "listed_exact_energy", 128),
+};
+
+/// Kernels that make a step by lists of clusters.
+#[derive(Clone, Copy)]
+pub struct StepKernels {
+    /// For plain Lennard-Jones.
+    pub uniform_lj: Kernel<ClusterStepArgs>,
+    /// For any interaction.
+    pub any: Kernel<ClusterStepArgs>,
+    /// Clusters that a warp takes.
+    pub clusters: usize,
+}
+
+/// Steps where clusters have many neighbours.
+pub const STEP: StepKernels = StepKernels {
+    uniform_lj: Kernel::new("cluster_step", "step_uniform", 128),
+    any: Kernel::new("cluster_step", "step_any", 128),
+    clusters: 1,
+};
+/// Steps where most clusters have none.
+pub const STEP_SPARSE: StepKernels = StepKernels {
+    uniform_lj: Kernel::new("cluster_step", "step_sparse_uniform", 128),
+    any: Kernel::new("cluster_step", "step_sparse_any", 128),
+    clusters: 4,
 };
 
 /// Forces by testing all pairs; a warp for each [`CLUSTER`].

@@ -3,9 +3,9 @@
 //! Beside the boxes and points of paper A there are the spheres and squares of paper B (sections 4.2 and 4.3). With r
 //! the one radius and `dr` the displacement from the ray's particle to the body's, |dr| < r:
 //!
-//! - *Axes.* Let a be the axis on which |dr| is largest, x = |dr_a|. The ray along it, of half length r/√3, comes within
-//!   √(2/3) r of the body's centre: if x <= r/√3, at distance √(|dr|² - x²) <= √2 x; else at its end, at distance²
-//!   (x - r/√3)² + |dr|² - x² < 4/3 r² - 2 x r/√3 <= 2/3 r².
+//! - *Axes.* Let a be the axis on which |dr| is largest, x = |dr_a|. The ray along it, of half length r/√3, comes
+//!   within √(2/3) r of the body's centre: if x <= r/√3, at distance √(|dr|² - x²) <= √2 x; else at its end, at
+//!   distance² (x - r/√3)² + |dr|² - x² < 4/3 r² - 2 x r/√3 <= 2/3 r².
 //! - *Edges.* The edge of the ray's cube of width r that lies towards the body along y and z meets the body's cube,
 //!   because cubes of width r around points less than r apart on each axis overlap.
 //!

@@ -81,6 +81,7 @@ impl Loaded {
             }
             // The order of candidates depends on when the BVH was built, which policies decide by the clock:
             // exact sums keep results independent of it.
+            Method::Cluster => unreachable!("refused by supports"),
             Method::RtBoxes | Method::RtSpheres | Method::RtSquares | Method::RtPerse => {
                 gather(physics, structure, true, quantities.energy, &finish);
             }

@@ -20,6 +20,7 @@ impl Index {
         let probe = match plan.method {
             Method::Brute => return Self::Brute(Brute::default()),
             Method::Cell => return Self::Grid(Grid::default()),
+            Method::Cluster => unreachable!("refused by supports"),
             Method::RtList | Method::RtForces | Method::RtPerse | Method::RtBoxes => Probe::Point,
             Method::RtSpheres => Probe::Axes,
             Method::RtSquares => Probe::Edges,

@@ -42,6 +42,8 @@ pub struct CellPlan {
     pub n_cells: usize,
     /// What kernels must add to ranges so that roundings lose no candidate, \[length\].
     pub slack: f32,
+    /// Expected number of particles within the largest range of one of them.
+    pub neighbors: f64,
 }
 
 impl CellPlan {
@@ -52,7 +54,8 @@ impl CellPlan {
             Some(cutoff) => classes::single(survey.n, cutoff),
             None => classes::divide(survey.sample.iter().map(|p| p.w).collect(), survey.largest, &bulk),
         };
-        let mut plan = Self { slack: slack(&bulk, survey.sim_box), ..Self::default() };
+        let neighbors = survey.n as f64 * bulk.share_within(f64::from(survey.largest));
+        let mut plan = Self { slack: slack(&bulk, survey.sim_box), neighbors, ..Self::default() };
         for class in &classes {
             let cells = lay_out(class, &bulk, plan.n_cells);
             plan.n_cells += cells.n.iter().map(|&n| n as usize).product::<usize>();

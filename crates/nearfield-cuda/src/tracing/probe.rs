@@ -13,8 +13,8 @@ pub enum Probe {
     Point,
     /// Spheres of radius √(2/3) r, met by three rays along the axes (paper B, section 4.2).
     Axes,
-    /// Two squares each, opposite faces of a cube of width r, met by rays along the cube's other edges (paper B, section
-    /// 4.3).
+    /// Two squares each, opposite faces of a cube of width r, met by rays along the cube's other edges (paper B,
+    /// section 4.3).
     Edges,
 }
 

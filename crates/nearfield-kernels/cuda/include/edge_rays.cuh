@@ -1,9 +1,9 @@
 // Four rays along the edges of a cube through squares, two faces of a cube (paper B, section 4.3).
 //
-// The cubes of neighbours are of width r. The edge of i's cube on the side of j along y and z passes through j's: of the
-// face at x_j - r/2, where j is not below i along x, else of the face at x_j + r/2. Squares are larger than faces and
-// rays longer than edges by margins, and of the two triangles of a square each reaches beyond the diagonal by a margin.
-// So that ray meets that triangle for certain, and no other hit counts. Proof in docs/rays.md.
+// The cubes of neighbours are of width r. The edge of i's cube on the side of j along y and z passes through j's: of
+// the face at x_j - r/2, where j is not below i along x, else of the face at x_j + r/2. Squares are larger than faces
+// and rays longer than edges by margins, and of the two triangles of a square each reaches beyond the diagonal by a
+// margin. So that ray meets that triangle for certain, and no other hit counts. Proof in docs/rays.md.
 
 #pragma once
 

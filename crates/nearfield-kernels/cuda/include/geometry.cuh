@@ -1,7 +1,7 @@
 // Places of spheres, squares and their rays.
 //
-// Coordinates are clamped to the box and some way beyond, so that their rounding is known: on open axes particles may be
-// anywhere. That brings no two particles further apart on any axis, so neighbours stay where rays find them.
+// Coordinates are clamped to the box and some way beyond, so that their rounding is known: on open axes particles may
+// be anywhere. That brings no two particles further apart on any axis, so neighbours stay where rays find them.
 
 #pragma once
 

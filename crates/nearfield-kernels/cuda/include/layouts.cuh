@@ -420,6 +420,114 @@ struct ListArgs {
 };
 static_assert(sizeof(ListArgs) == 736, "ListArgs differs between host and device");
 
+// Consecutive chunks of 32 entries of a cluster's list.
+struct Segment {
+    // First chunk.
+    u32 begin;
+    // The chunk after the last.
+    u32 end;
+    // The segment where the list goes on; all ones where it ends.
+    u32 next;
+    // Zero.
+    u32 unused;
+};
+static_assert(sizeof(Segment) == 16, "Segment differs between host and device");
+
+// What kernels tell each other and the host about a list.
+struct ClusterControl {
+    // The first step whose positions the list may not serve; all ones while none is known.
+    u64 rebuild_at;
+    // The last step that was computed by the list.
+    u64 done;
+    // Chunks of all lists.
+    u32 chunks;
+    // Segments beyond the first of each cluster.
+    u32 segments;
+};
+static_assert(sizeof(ClusterControl) == 24, "ClusterControl differs between host and device");
+
+// Arguments of `list_clusters`.
+struct ClusterListArgs {
+    // The interaction, its cutoff longer by the skin.
+    Law law;
+    // The box.
+    Box3 space;
+    // Cells of particles in memory order.
+    Grid grid;
+    // One for each cluster, then those that follow, `[segment_capacity]`.
+    Segment *segment;
+    // Entries, `[capacity][32]`.
+    u32 *entry;
+    // Chunks and segments are counted from zero, beyond what there is room for.
+    ClusterControl *control;
+    // Number of particles.
+    u32 n;
+    // Number of clusters.
+    u32 n_clusters;
+    // Chunks that there is room for.
+    u32 capacity;
+    // Segments that there is room for.
+    u32 segment_capacity;
+    // Added to ranges so that roundings lose no candidate.
+    float slack;
+    // How near a periodic face a particle may cross it while the list serves.
+    float margin;
+};
+static_assert(sizeof(ClusterListArgs) == 728, "ClusterListArgs differs between host and device");
+
+// Arguments of `listed_*`: forces of all particles.
+struct ListedArgs {
+    // As for all kernels that gather forces, of particles in memory order.
+    GatherArgs gather;
+    // See [`ClusterListArgs`].
+    Segment *segment;
+    // See [`ClusterListArgs`].
+    u32 *entry;
+};
+static_assert(sizeof(ListedArgs) == 752, "ListedArgs differs between host and device");
+
+// Arguments of `step_*`: forces, and with them a step of all particles.
+struct ClusterStepArgs {
+    // Where forces come from; results are not stored.
+    ListedArgs listed;
+    // How particles move.
+    Integrator integrator;
+    // The particles.
+    Particles particles;
+    // Where positions go.
+    float4 *next;
+    // Positions that the list was made for.
+    float4 *reference;
+    // What went wrong.
+    Status *status;
+    // Whether the list serves.
+    ClusterControl *control;
+    // The step that the forces belong to.
+    u64 step;
+    // Square of the distance that particles may move while the list serves.
+    float limit2;
+    // Zero.
+    u32 unused;
+};
+static_assert(sizeof(ClusterStepArgs) == 928, "ClusterStepArgs differs between host and device");
+
+// Arguments of `clusters_moved`: whether a list serves the present positions.
+struct ClustersMovedArgs {
+    // The box.
+    Box3 space;
+    // Positions.
+    float4 *position;
+    // Positions that the list was made for.
+    float4 *reference;
+    // `rebuild_at` becomes zero where the list does not serve.
+    ClusterControl *control;
+    // Number of particles.
+    u32 n;
+    // Square of the distance that particles may move.
+    float limit2;
+};
+static_assert(sizeof(ClustersMovedArgs) == 80, "ClustersMovedArgs differs between host and device");
+
 // A mirror particle: a box around a periodic image.
 struct Ghost {
     // Place of the particle.
