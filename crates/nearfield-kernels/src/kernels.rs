@@ -1,11 +1,11 @@
 //! Every kernel, by the structure it takes.
 
 use crate::{
-    ByForce, Kernel, RayProgram,
+    ByForce, Kernel, Primitive, RayProgram,
     layouts::{
-        AdvanceRays, BoundsArgs, BoxesArgs, ClusterListArgs, ClusterStepArgs, ClustersMovedArgs, FinishExactArgs,
-        ForceRays, GatherArgs, IntegrateArgs, ListArgs, ListRays, ListedArgs, MortonArgs, MotionArgs, PermuteArgs,
-        RescaleArgs, RowsArgs, SampleArgs, ScanArgs, SortArgs, TotalsArgs,
+        AdvanceRays, BodiesArgs, BoundsArgs, BoxesArgs, ClusterListArgs, ClusterStepArgs, ClustersMovedArgs,
+        FinishExactArgs, ForceRays, GatherArgs, IntegrateArgs, ListArgs, ListRays, ListedArgs, MortonArgs, MotionArgs,
+        PermuteArgs, RescaleArgs, RowsArgs, SampleArgs, ScanArgs, SortArgs, TotalsArgs,
     },
 };
 
@@ -151,6 +151,12 @@ pub const BRUTE_LIST_RADII: ListKernels = ListKernels {
 
 /// Boxes around particles and ghosts.
 pub const FIT_BOXES: Kernel<BoxesArgs> = Kernel::new("boxes", "fit_boxes", 256);
+/// Centres of spheres around particles and ghosts.
+pub const FIT_SPHERES: Kernel<BodiesArgs> = Kernel::new("bodies", "fit_spheres", 256);
+/// Triangles of squares around particles and ghosts.
+pub const FIT_SQUARES: Kernel<BodiesArgs> = Kernel::new("bodies", "fit_squares", 256);
+/// Triangles of the two squares around a particle.
+pub const TRIANGLES_PER_PARTICLE: u32 = 4;
 /// Faces of particles, and the number of ghosts.
 pub const COUNT_GHOSTS: Kernel<BoxesArgs> = Kernel::new("ghosts", "count_ghosts", 256);
 /// Mirror particles.
@@ -172,18 +178,27 @@ pub const ROWS_LANES: u64 = 8;
 pub const PAYLOAD_WORDS: u32 = 16;
 
 const fn program<A: crate::Layout>(module: &'static str, name: &'static str) -> RayProgram<A> {
-    RayProgram::new(module, name, name)
+    RayProgram::new(module, Primitive::Box, name)
 }
 
-/// Forces of all particles where one cutoff serves all pairs; there is no scaled Lennard-Jones.
-pub const RAY_GATHER: ByForce<RayProgram<ForceRays>> = ByForce {
-    fast: program("ray_gather", "gather"),
-    energy: program("ray_gather", "gather_energy"),
-    exact: program("ray_gather", "gather_exact"),
-    exact_energy: program("ray_gather", "gather_exact_energy"),
-    uniform_lj: program("ray_gather", "gather_uniform_lj"),
-    scaled_lj: program("ray_gather", "gather"),
-};
+/// The programs of a module of `ray_gather.cuh`. There is no scaled Lennard-Jones, which is for per-particle radii.
+const fn gather(module: &'static str, primitive: Primitive) -> ByForce<RayProgram<ForceRays>> {
+    ByForce {
+        fast: RayProgram::new(module, primitive, "gather"),
+        energy: RayProgram::new(module, primitive, "gather_energy"),
+        exact: RayProgram::new(module, primitive, "gather_exact"),
+        exact_energy: RayProgram::new(module, primitive, "gather_exact_energy"),
+        uniform_lj: RayProgram::new(module, primitive, "gather_uniform_lj"),
+        scaled_lj: RayProgram::new(module, primitive, "gather"),
+    }
+}
+
+/// Forces of all particles where one cutoff serves all pairs, by point rays through boxes.
+pub const RAY_GATHER: ByForce<RayProgram<ForceRays>> = gather("ray_gather", Primitive::Box);
+/// The same by axis rays through spheres.
+pub const AXIS_GATHER: ByForce<RayProgram<ForceRays>> = gather("axis_gather", Primitive::Sphere);
+/// The same by edge rays through squares.
+pub const EDGE_GATHER: ByForce<RayProgram<ForceRays>> = gather("edge_gather", Primitive::Triangle);
 /// Forces of all particles, added to zeros.
 pub const RAY_SCATTER: ByForce<RayProgram<ForceRays>> = ByForce {
     fast: program("ray_scatter", "scatter"),
@@ -199,7 +214,15 @@ pub const RAY_ADVANCE: RayProgram<AdvanceRays> = program("ray_advance", "advance
 pub const RAY_ADVANCE_EXACT: RayProgram<AdvanceRays> = program("ray_advance", "advance_exact");
 /// The same in f32 for plain Lennard-Jones.
 pub const RAY_ADVANCE_UNIFORM_LJ: RayProgram<AdvanceRays> = program("ray_advance", "advance_uniform_lj");
-/// Entries of each row of neighbours.
+/// Entries of each row of neighbours, by point rays.
 pub const RAY_COUNT: RayProgram<ListRays> = program("ray_list", "count");
-/// Rows of neighbours.
+/// Rows of neighbours, by point rays.
 pub const RAY_FILL: RayProgram<ListRays> = program("ray_list", "fill");
+/// Entries of each row of neighbours, by axis rays.
+pub const AXIS_COUNT: RayProgram<ListRays> = RayProgram::new("axis_list", Primitive::Sphere, "count");
+/// Rows of neighbours, by axis rays.
+pub const AXIS_FILL: RayProgram<ListRays> = RayProgram::new("axis_list", Primitive::Sphere, "fill");
+/// Entries of each row of neighbours, by edge rays.
+pub const EDGE_COUNT: RayProgram<ListRays> = RayProgram::new("edge_list", Primitive::Triangle, "count");
+/// Rows of neighbours, by edge rays.
+pub const EDGE_FILL: RayProgram<ListRays> = RayProgram::new("edge_list", Primitive::Triangle, "fill");

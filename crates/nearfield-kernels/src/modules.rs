@@ -43,9 +43,19 @@ pub const MODULES: &[Module] = modules![
     "listed_forces",
     "lists",
     "boxes",
+    "bodies",
     "ghosts",
     "rows"
 ];
 
 /// Ray-tracing programs, from `optix/`.
-pub const RAY_MODULES: &[Module] = modules!["ray_gather", "ray_scatter", "ray_advance", "ray_list"];
+pub const RAY_MODULES: &[Module] = modules![
+    "ray_gather",
+    "ray_scatter",
+    "ray_advance",
+    "ray_list",
+    "axis_gather",
+    "axis_list",
+    "edge_gather",
+    "edge_list"
+];

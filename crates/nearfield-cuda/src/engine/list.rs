@@ -32,7 +32,7 @@ impl Loaded {
                 // SAFETY: as above.
                 Structure::Cells(grid) => unsafe { grid::list(&**scene.gpu, Candidates::Cells(grid), &query, list) },
                 Structure::Clusters(_) => unreachable!("listers have cells instead"),
-                Structure::Boxes(bvh) | Structure::List(bvh, _) => bvh.list(scene, rows, images, list),
+                Structure::Bodies(bvh) | Structure::List(bvh, _) => bvh.list(scene, rows, images, list),
             }
         })?;
         Ok(&self.lister.as_ref().expect("it was just used").list)
@@ -50,7 +50,7 @@ impl Loaded {
                 // SAFETY: as above.
                 Structure::Cells(grid) => unsafe { grid::count(&**scene.gpu, Candidates::Cells(grid), &query, list) },
                 Structure::Clusters(_) => unreachable!("listers have cells instead"),
-                Structure::Boxes(bvh) | Structure::List(bvh, _) => bvh.count(scene, rows, list),
+                Structure::Bodies(bvh) | Structure::List(bvh, _) => bvh.count(scene, rows, list),
             }
         })?;
         Ok(&self.lister.as_ref().expect("it was just used").list.count)
@@ -101,7 +101,7 @@ impl Loaded {
         let scene = physics.scene(state);
         match &mut lister.structure {
             // Without the skin that forces would want.
-            Structure::Boxes(bvh) | Structure::List(bvh, _) => bvh.update(Action::Build, &scene).map(drop)?,
+            Structure::Bodies(bvh) | Structure::List(bvh, _) => bvh.update(Action::Build, &scene).map(drop)?,
             structure => structure.update_in_place(Action::Build, &scene).map(drop)?,
         }
         body(lister, &state.id, &scene)

@@ -5,7 +5,7 @@ use crate::{
     Gpu, Variant,
     cluster::Clusters,
     grid::{self, Candidates, ForceQuery, Grid, Pairs},
-    tracing::{Bvh, Outcome, Scene, Step, StoredList, Sums, Updated},
+    tracing::{Bvh, Outcome, Probe, Scene, Step, StoredList, Sums, Updated},
 };
 use nearfield_core::{Method, Plan, Report, Result, maintenance::Action};
 use nearfield_kernels::layouts;
@@ -29,22 +29,25 @@ pub(crate) enum Structure {
     Cells(Box<Grid>),
     /// Cells, and lists where they pay.
     Clusters(Box<Clusters>),
-    /// Boxes, traced for forces.
-    Boxes(Box<Bvh>),
+    /// Bodies, traced for forces.
+    Bodies(Box<Bvh>),
     /// Boxes, traced for a list.
     List(Box<Bvh>, Box<StoredList>),
 }
 
 impl Structure {
     pub fn new(gpu: &Arc<dyn Gpu>, plan: &Plan, physics: &Physics) -> Result<Self> {
+        let bvh = |probe| Bvh::new(gpu, probe, plan.images).map(Box::new);
         Ok(match plan.method {
             Method::Brute => Self::Brute,
             Method::Cell => Self::Cells(Box::new(Grid::new(gpu))),
             Method::Cluster => Self::Clusters(Box::new(Clusters::new(gpu, plan, physics))),
-            Method::RtForces | Method::RtPerse | Method::RtBoxes => Self::Boxes(Box::new(Bvh::new(gpu, plan.images)?)),
+            Method::RtForces | Method::RtPerse | Method::RtBoxes => Self::Bodies(bvh(Probe::Point)?),
+            Method::RtSpheres => Self::Bodies(bvh(Probe::Axes)?),
+            Method::RtSquares => Self::Bodies(bvh(Probe::Edges)?),
             Method::RtList => {
                 let list = StoredList::new(gpu, plan, &physics.sim_box, physics.largest);
-                Self::List(Box::new(Bvh::new(gpu, plan.images)?), Box::new(list))
+                Self::List(bvh(Probe::Point)?, Box::new(list))
             }
         })
     }
@@ -101,7 +104,7 @@ impl Structure {
                 unsafe { grid.build(particles.position, particles.n as usize, scene.law.variable != 0)? };
                 Ok(Updated { built: true, forced: false })
             }
-            Self::Boxes(bvh) => bvh.update(action, scene),
+            Self::Bodies(bvh) => bvh.update(action, scene),
             Self::List(bvh, list) => {
                 list.invalidate();
                 bvh.update(action, &Scene { skin: list.skin(), ..*scene })
@@ -130,10 +133,10 @@ impl Structure {
                 }
                 Ok(())
             }
-            Self::Boxes(bvh) if plan.method == Method::RtForces => {
+            Self::Bodies(bvh) if plan.method == Method::RtForces => {
                 scatter(bvh, Sums { exact: plan.deterministic, energy }, results, scene)
             }
-            Self::Boxes(bvh) => bvh.gather(scene, Sums { exact: plan.deterministic, energy }, results.layout()),
+            Self::Bodies(bvh) => bvh.gather(scene, Sums { exact: plan.deterministic, energy }, results.layout()),
             Self::List(bvh, list) => {
                 let sums = Sums { exact: plan.deterministic, energy };
                 let mut outcome = list.gather(bvh, scene, sums, results.layout(), plan.memory_budget, report)?;
@@ -150,9 +153,9 @@ impl Structure {
     /// Enqueues the forces and a step of all particles.
     ///
     /// # Panics
-    /// Where boxes are not traced for forces.
+    /// Where bodies are not traced for forces.
     pub fn advance(&self, plan: &Plan, scene: &Scene, results: layouts::Results, step: &Step) -> Result<()> {
-        let Self::Boxes(bvh) = self else { unreachable!("{} does not trace boxes for forces", plan.method) };
+        let Self::Bodies(bvh) = self else { unreachable!("{} does not trace for forces", plan.method) };
         bvh.advance(scene, plan.deterministic, results, step)
     }
 
@@ -172,7 +175,7 @@ impl Structure {
             Self::Brute => 0,
             Self::Cells(grid) => grid.bytes(),
             Self::Clusters(clusters) => clusters.bytes(),
-            Self::Boxes(bvh) => bvh.bytes(),
+            Self::Bodies(bvh) => bvh.bytes(),
             Self::List(bvh, list) => bvh.bytes() + list.bytes(),
         }
     }

@@ -568,17 +568,54 @@ struct BoxesArgs {
 };
 static_assert(sizeof(BoxesArgs) == 112, "BoxesArgs differs between host and device");
 
+// Spheres or squares around particles and the rays that meet them (paper B), whose origins are not their
+// particles. Zero where bodies are boxes.
+struct Geometry {
+    // Least coordinates that bodies and rays are given, whatever those of particles.
+    float lo[3];
+    // Greatest coordinates.
+    float hi[3];
+    // Radius of spheres; half the side of squares.
+    float body;
+    // Distance of squares from their particle along x, and of rays from theirs along y and z.
+    float offset;
+    // How far beyond their diagonal the triangles of a square reach.
+    float overlap;
+    // From the particle to the beginning of its rays, along them.
+    float start;
+    // Length of rays.
+    float length;
+    // Zero.
+    u32 unused;
+};
+static_assert(sizeof(Geometry) == 48, "Geometry differs between host and device");
+
+// Arguments of `fit_spheres` and `fit_squares`.
+struct BodiesArgs {
+    // As for boxes, of which there are none.
+    BoxesArgs boxes;
+    // Sizes and places.
+    Geometry geometry;
+    // Centres of spheres around each particle, then each ghost, `[n + n_ghosts]`.
+    float4 *centers;
+    // Vertices of the triangles of squares, `[n + n_ghosts][2][2][3][3]`: by square, triangle, vertex and axis.
+    float *vertices;
+};
+static_assert(sizeof(BodiesArgs) == 176, "BodiesArgs differs between host and device");
+
 // What rays need to know.
 struct Rays {
     // The interaction.
     Law law;
     // The box.
     Box3 space;
-    // The particles, each with a ray from its position and a box around it.
+    // The particles, each with a ray from its position and a box around it, or what `geometry` says.
     Particles particles;
+    // Bodies other than boxes.
+    Geometry geometry;
     // What rays are traced against.
     u64 handle;
-    // Mirror particles, whose boxes follow those of the particles.
+    // Mirror particles, whose bodies follow those of the particles.
     Ghost *ghost;
     // How rays see periodic images: 0 by gamma rays, 1 in instances, 2 as ghosts.
     u32 view;
@@ -595,16 +632,16 @@ struct Rays {
     // Place of the particle of the first ray.
     u32 first;
 };
-static_assert(sizeof(Rays) == 264, "Rays differs between host and device");
+static_assert(sizeof(Rays) == 312, "Rays differs between host and device");
 
-// Parameters of the programs in `ray_gather` and `ray_scatter`.
+// Parameters of the programs in `ray_gather`, `axis_gather`, `edge_gather` and `ray_scatter`.
 struct ForceRays {
     // The rays.
     Rays rays;
     // Where forces go.
     Results results;
 };
-static_assert(sizeof(ForceRays) == 304, "ForceRays differs between host and device");
+static_assert(sizeof(ForceRays) == 352, "ForceRays differs between host and device");
 
 // Parameters of the programs in `ray_advance`.
 struct AdvanceRays {
@@ -621,9 +658,9 @@ struct AdvanceRays {
     // The step that the forces belong to.
     u64 step;
 };
-static_assert(sizeof(AdvanceRays) == 416, "AdvanceRays differs between host and device");
+static_assert(sizeof(AdvanceRays) == 464, "AdvanceRays differs between host and device");
 
-// Parameters of the programs in `ray_list`.
+// Parameters of the programs in `ray_list`, `axis_list` and `edge_list`.
 struct ListRays {
     // The rays.
     Rays rays;
@@ -645,7 +682,7 @@ struct ListRays {
     // Zero.
     u32 unused;
 };
-static_assert(sizeof(ListRays) == 320, "ListRays differs between host and device");
+static_assert(sizeof(ListRays) == 368, "ListRays differs between host and device");
 
 // Arguments of `rows_*`: forces from stored rows of neighbours, numbered by place.
 struct RowsArgs {
