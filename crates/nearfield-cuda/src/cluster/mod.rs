@@ -47,8 +47,8 @@ impl Clusters {
         }
     }
 
-    /// Chooses cells and the variant by where the particles are.
-    pub(crate) fn plan(&mut self, sample: &Sample, physics: &Physics) {
+    /// Chooses cells and the variant by where the particles are. Gives whether that is much as before.
+    pub(crate) fn plan(&mut self, sample: &Sample, physics: &Physics) -> bool {
         let skin = self.list.skin();
         let survey = physics.survey(sample);
         let with_skin =
@@ -58,8 +58,8 @@ impl Clusters {
         if self.over_budget {
             self.variant = Variant::Pairs;
         }
-        self.grid.take(if self.variant.uses_list() || skin == 0.0 { plan } else { CellPlan::new(&survey) });
         self.list.invalidate();
+        self.grid.take(if self.variant.uses_list() || skin == 0.0 { plan } else { CellPlan::new(&survey) })
     }
 
     /// What was chosen.

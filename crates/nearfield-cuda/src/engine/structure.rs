@@ -66,12 +66,12 @@ impl Structure {
         matches!(self, Self::Cells(_) | Self::Clusters(_))
     }
 
-    /// Makes choices that depend on how the particles lie.
-    pub fn plan(&mut self, sample: &Sample, physics: &Physics) {
+    /// Makes choices that depend on how the particles lie. Gives whether they lie much as before.
+    pub fn plan(&mut self, sample: &Sample, physics: &Physics) -> bool {
         match self {
             Self::Cells(grid) => grid.plan(&physics.survey(sample)),
             Self::Clusters(clusters) => clusters.plan(sample, physics),
-            _ => {}
+            _ => true,
         }
     }
 

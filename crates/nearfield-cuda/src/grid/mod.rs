@@ -49,14 +49,15 @@ impl Grid {
         }
     }
 
-    /// Takes other cells from the next build on.
-    pub fn plan(&mut self, survey: &Survey) {
-        self.take(CellPlan::new(survey));
+    /// Takes other cells from the next build on. Gives whether they are for much the same surroundings as before.
+    pub fn plan(&mut self, survey: &Survey) -> bool {
+        self.take(CellPlan::new(survey))
     }
 
     /// The same from a plan.
-    pub(crate) fn take(&mut self, plan: CellPlan) {
-        self.plan = plan;
+    pub(crate) fn take(&mut self, plan: CellPlan) -> bool {
+        let before = std::mem::replace(&mut self.plan, plan);
+        self.plan.is_much_as(&before)
     }
 
     /// Sorts `n` particles by the cells of [`Grid::plan`], which must have been called. `variable`: radii are in w.

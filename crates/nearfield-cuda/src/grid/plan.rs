@@ -15,6 +15,9 @@ const CELLS_PER_WIDTH: f64 = 4.0;
 const CELLS_PER_PARTICLE: f64 = 4.0;
 const LEAST_CELLS: f64 = 64.0;
 
+/// Ratio of expected neighbours that a sample does not tell from none.
+const SIMILAR: f64 = 1.1;
+
 /// Most cells along an axis: kernels compute them in f32.
 const MOST_ALONG: f64 = (1 << 22) as f64;
 
@@ -62,6 +65,14 @@ impl CellPlan {
             plan.classes.push(cells);
         }
         plan
+    }
+}
+
+impl CellPlan {
+    /// Whether particles have about as many neighbours in as many classes.
+    pub(super) fn is_much_as(&self, other: &Self) -> bool {
+        let ratio = self.neighbors / other.neighbors;
+        self.classes.len() == other.classes.len() && (1.0 / SIMILAR..SIMILAR).contains(&ratio)
     }
 }
 
