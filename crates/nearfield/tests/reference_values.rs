@@ -6,8 +6,8 @@
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use nearfield::{
-    Boundary, Device, Images, Interaction, Method, Particles, PerParticle, Plan, Quantities, Radii, SimBox, System,
-    Truncation, config::Config, engine, file_system,
+    Boundary, Device, Images, Interaction, Particles, PerParticle, Plan, Quantities, Radii, SimBox, System, Truncation,
+    config::Config, engine, file_system,
 };
 use std::{
     fs,

@@ -1,6 +1,6 @@
 //! Checkpoints in a program.
 
-use crate::{build, smooth};
+use crate::{build, methods_of_the_cpu, smooth};
 use nearfield::{Method, Simulation, run::Checkpoint};
 use std::fs;
 

@@ -1,6 +1,6 @@
 //! Conservation laws and thermostats.
 
-use crate::{build, crystal, smooth};
+use crate::{build, crystal, methods_of_the_cpu, smooth};
 use nearfield::{Dynamics, Ensemble, Method, Simulation, SimulationBuilder, System};
 
 fn momentum(system: &System) -> [f64; 3] {
