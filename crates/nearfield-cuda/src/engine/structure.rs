@@ -138,7 +138,11 @@ impl Structure {
                     report.builds += 1;
                     outcome = list.gather(bvh, scene, sums, results.layout(), plan.memory_budget, report)?;
                 }
-                if outcome == Outcome::NeedsScatter { scatter(bvh, sums, results, scene) } else { Ok(()) }
+                match outcome {
+                    Outcome::NeedsNoList if scene.law.variable != 0 => scatter(bvh, sums, results, scene),
+                    Outcome::NeedsNoList => bvh.gather(scene, sums, results.layout()),
+                    _ => Ok(()),
+                }
             }
         }
     }
