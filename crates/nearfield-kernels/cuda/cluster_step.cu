@@ -40,6 +40,7 @@ template <class L, u32 CLUSTERS> __device__ inline void cluster_step(const Clust
     if (a.control->rebuild_at <= a.step) return;
     if (thread_index() == 0) a.control->done = a.step;
     const GatherArgs& g = a.listed.gather;
+    __shared__ u32 entries[WARPS_PER_BLOCK * SEGMENT_ENTRIES];
     const u32 warp = thread_index() / WARP, lane = threadIdx.x % WARP;
     float4 force = make_float4(0.0f, 0.0f, 0.0f, 0.0f);
 #pragma unroll 1
@@ -52,7 +53,7 @@ template <class L, u32 CLUSTERS> __device__ inline void cluster_step(const Clust
             if (segment.begin == segment.end) continue;
         }
         Gather<L, false, false, NO_IMAGE> gather(g, cluster);
-        meet_listed(a.listed, number, gather);
+        meet_listed(a.listed, number, entries, gather);
         typedef Sums<false, false> S;
         const float x = gather.sum(&S::x), y = gather.sum(&S::y), z = gather.sum(&S::z);
         // From the four lanes that have the sums of a particle to the one that moves it.
@@ -65,7 +66,7 @@ template <class L, u32 CLUSTERS> __device__ inline void cluster_step(const Clust
     if (i < g.n && (CLUSTERS > 1 || lane % 4 == 0)) move_particle(a, i, force);
 }
 
-KERNEL_MIN_BLOCKS(step_uniform, ClusterStepArgs, WARPS_PER_BLOCK* WARP, 7) {
+KERNEL_MIN_BLOCKS(step_uniform, ClusterStepArgs, WARPS_PER_BLOCK* WARP, 6) {
     cluster_step<UniformLennardJones, 1>(a);
 }
 

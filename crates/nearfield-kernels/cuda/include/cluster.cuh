@@ -49,11 +49,10 @@ struct Cluster {
 
 // One axis of the nearest image: half a period away, both images are out of range.
 __device__ inline float to_nearest(const Box3& space, int axis, float d, int& image) {
-    image = 0;
-    if (space.boundary[axis] != 0) return d;
-    const float length = space.length[axis], half = 0.5f * length;
-    image = d > half ? -1 : d < -half ? 1 : 0;
-    return d + (float)image * length;
+    const float length = space.length[axis], half = space.boundary[axis] == 0 ? 0.5f * length : infinity();
+    const bool beyond = fabsf(d) > half;
+    image = !beyond ? 0 : d > 0.0f ? -1 : 1;
+    return beyond ? d - copysignf(length, d) : d;
 }
 
 template <Images IMAGES>

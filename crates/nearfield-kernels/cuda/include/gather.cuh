@@ -67,6 +67,13 @@ template <class L, bool EXACT, bool ENERGY, Meetings MEETINGS> struct Gather : C
         }
     }
 
+    // Candidates of a list whose images are not known, but the same for all particles of the cluster.
+    __device__ void care(u32 slot, const float4& xj, bool valid) {
+        u32 image = HOME_IMAGE;
+        if (!Traits<L>::COSTLY) separation<NEAREST>(a.space, x[0], xj, {0.0f, 0.0f, 0.0f}, image);
+        pairs<Traits<L>::COSTLY ? NEAREST : SHIFTED, true>(slot, xj, valid, image);
+    }
+
     // CARE: some particles may not be active, and candidates may be the particles themselves.
     template <Images IMAGES, bool CARE>
     __device__ void pairs(u32 slot, const float4& xj, bool valid, u32 image) {
@@ -74,18 +81,19 @@ template <class L, bool EXACT, bool ENERGY, Meetings MEETINGS> struct Gather : C
         Shift shift = {0.0f, 0.0f, 0.0f};
         if (IMAGES == SHIFTED && image != HOME_IMAGE) shift = shift_of(a.space, image);
         const u32 own = IMAGES == SHIFTED && image != HOME_IMAGE ? (u32)CLUSTER : slot - first;
+        const u32 allowed = own < CLUSTER ? active & ~(1u << own) : active;
         // Pairs within a cluster are met from both sides, at whichever image.
         const bool both = MEETINGS == ONCE ? !CARE || slot - first >= count : !Traits<L>::ONE_RANGE && once;
         Sums<EXACT, ENERGY> other = zero_sums<Sums<EXACT, ENERGY>>();
         bool any = false;
 #pragma unroll(Traits<L>::COSTLY ? 1 : CLUSTER)
         for (u32 k = 0; k < CLUSTER; ++k) {
-            if (CARE && !(active >> k & 1)) continue;
+            if (CARE && MEETINGS != NO_IMAGE && !(active >> k & 1)) continue;
             const Shift d = separation<IMAGES>(a.space, x[k], xj, shift, image);
             const float r2 = squared_length(d.x, d.y, d.z);
             const float range = Traits<L>::ONE_RANGE ? a.law.cutoff : fmaxf(radius_of(x[k]), radius_of(xj));
             bool in = valid && r2 < range * range;
-            if (CARE) in = in && own != k;
+            if (CARE) in = in && (allowed >> k & 1);
             if (Traits<L>::COSTLY && !in) continue;
             const PairForce pair = L::template evaluate<ENERGY>(a.law, r2, range, kind[k], kind_j);
             const float f = in ? pair.f_over_r : 0.0f;

@@ -428,8 +428,8 @@ struct Segment {
     u32 end;
     // The segment where the list goes on; all ones where it ends.
     u32 next;
-    // Zero.
-    u32 unused;
+    // 1 where each pair needs an image of its own, 0 where one serves a candidate and the whole cluster.
+    u32 by_pair;
 };
 static_assert(sizeof(Segment) == 16, "Segment differs between host and device");
 

@@ -16,8 +16,8 @@ layouts! {
         pub end: u32,
         /// The segment where the list goes on; all ones where it ends.
         pub next: u32,
-        /// Zero.
-        pub unused: u32,
+        /// 1 where each pair needs an image of its own, 0 where one serves a candidate and the whole cluster.
+        pub by_pair: u32,
     }
 
     /// What kernels tell each other and the host about a list.
