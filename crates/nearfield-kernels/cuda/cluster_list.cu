@@ -8,6 +8,8 @@
 // A candidate is listed if it is near any particle of the cluster, now or before the list is built anew; once, whatever
 // its images near the cluster are.
 struct Listing : Cluster {
+    static const bool AHEAD = true;
+
     const ClusterListArgs& a;
     u32* stage;
     u32 count, staged;
@@ -20,6 +22,7 @@ struct Listing : Cluster {
     __device__ Listing(const ClusterListArgs& arguments, const ClusterPlace& place, u32 number, u32* entries)
         : a(arguments), stage(entries), count(place.count), staged(0), segment(number) {
         load(a.law, a.grid.slot, place);
+        if (a.once) least = first;
         const Bounds box = cluster_bounds(x);
         const float reach = cutoff + a.slack;
         reach2 = reach * reach;
@@ -52,8 +55,10 @@ struct Listing : Cluster {
         return squared_length(p.x - x[k].x, p.y - x[k].y, p.z - x[k].z);
     }
 
-    __device__ void meet(u32 slot, bool valid, u32 image) {
-        float4 xj = slots[slot];
+    __device__ void meet(const Candidate& c) {
+        const u32 slot = c.slot, image = c.image;
+        const bool valid = c.valid;
+        float4 xj = c.x;
         if (apart) {
             append(slot, valid && is_listed(slot, xj, image), true);
             return;

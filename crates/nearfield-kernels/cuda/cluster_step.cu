@@ -1,44 +1,12 @@
 // Steps by lists of clusters: forces, the rest of a step and the beginning of the next in one kernel.
 //
-// The host enqueues steps without knowing how long the list will serve. A step that finds a particle too far from where
-// it was when the list was made forbids the next, and steps that are forbidden do nothing. So no pair is missed, and
-// the host need not wait for a step.
-
+#include "cluster_step.cuh"
 #include "gather.cuh"
-#include "integrate.cuh"
-#include "listed.cuh"
-
-__device__ inline void move_particle(const ClusterStepArgs& a, u32 i, const float4& force) {
-    Particles to = a.particles;
-    to.position = a.next;
-    Moving p = load_moving(a.particles, i);
-    const float4 start = p.position;
-    // A particle that has failed is left where it was, so that coordinates stay finite until the run is stopped.
-    if (!all_finite(force)) {
-        atomicMin(&a.status->force, failure(a.step, a.particles.id[i]));
-        to.position[i] = start;
-        return;
-    }
-    // Random numbers take input indices; nothing else does.
-    const u32 id = a.integrator.langevin ? a.particles.id[i] : 0;
-    finish_step(a.integrator, p, force);
-    start_step(a.integrator, p, force, id, a.step + 1);
-    if (!all_finite(p.position)) {
-        atomicMin(&a.status->position, failure(a.step + 1, a.particles.id[i]));
-        to.position[i] = start;
-        return;
-    }
-    store_moving(to, i, p);
-    if (has_moved(a.integrator.space, a.reference[i], p.position, a.limit2)) {
-        atomicMin(&a.control->rebuild_at, a.step + 1);
-    }
-}
 
 // A warp takes so many clusters, one after another: one where they have many neighbours, more where most have none and
 // moving the particles is the work.
 template <class L, u32 CLUSTERS> __device__ inline void cluster_step(const ClusterStepArgs& a) {
-    if (a.control->rebuild_at <= a.step) return;
-    if (thread_index() == 0) a.control->done = a.step;
+    if (!begin_step(a)) return;
     const GatherArgs& g = a.listed.gather;
     __shared__ u32 entries[WARPS_PER_BLOCK * SEGMENT_ENTRIES];
     const u32 warp = thread_index() / WARP, lane = threadIdx.x % WARP;

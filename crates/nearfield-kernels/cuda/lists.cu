@@ -28,7 +28,7 @@ KERNEL_MIN_BLOCKS(cell_list_count_radii, ListArgs, WARPS_PER_BLOCK* WARP, 6) {
     list_by_cells<ListCount<false, true>, true>(a);
 }
 
-KERNEL_MIN_BLOCKS(cell_list_fill, ListArgs, WARPS_PER_BLOCK* WARP, 6) {
+KERNEL_MIN_BLOCKS(cell_list_fill, ListArgs, WARPS_PER_BLOCK* WARP, 5) {
     list_by_cells<ListFill<false, false>, false>(a);
 }
 

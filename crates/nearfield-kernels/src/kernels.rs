@@ -5,7 +5,7 @@ use crate::{
     layouts::{
         AdvanceRays, BodiesArgs, BoundsArgs, BoxesArgs, ClusterListArgs, ClusterStepArgs, ClustersMovedArgs,
         FinishExactArgs, ForceRays, GatherArgs, IntegrateArgs, ListArgs, ListRays, ListedArgs, MortonArgs, MotionArgs,
-        PermuteArgs, RescaleArgs, RowsArgs, SampleArgs, ScanArgs, SortArgs, TotalsArgs,
+        NumberArgs, PermuteArgs, RescaleArgs, RowsArgs, SampleArgs, ScanArgs, SortArgs, TotalsArgs,
     },
 };
 
@@ -45,6 +45,8 @@ pub const SCAN_TILE: usize = 2048;
 pub const CELL_COUNT: Kernel<SortArgs> = Kernel::new("cells", "cell_count", 256);
 /// Particles in the order of cells.
 pub const CELL_SCATTER: Kernel<SortArgs> = Kernel::new("cells", "cell_scatter", 256);
+/// Input indices in the order of cells.
+pub const NUMBER_SLOTS: Kernel<NumberArgs> = Kernel::new("cells", "number_slots", 256);
 
 /// Particles that a warp takes at a time.
 pub const CLUSTER: usize = 8;
@@ -84,6 +86,17 @@ pub const LISTED_FORCES: ByForce<Kernel<ListedArgs>> = ByForce {
     exact: Kernel::new("listed_forces", "listed_exact", 128),
     exact_energy: Kernel::new("listed_forces", "listed_exact_energy", 128),
 };
+
+/// The same from lists that hold each pair once, added to zeros, but for sums that do not depend on order.
+pub const LISTED_PAIRS: ByForce<Kernel<ListedArgs>> = ByForce {
+    uniform_lj: Kernel::new("listed_pairs", "pairs_uniform", 128),
+    scaled_lj: Kernel::new("listed_pairs", "pairs_any", 128),
+    fast: Kernel::new("listed_pairs", "pairs_any", 128),
+    energy: Kernel::new("listed_pairs", "pairs_any_energy", 128),
+    ..LISTED_FORCES
+};
+/// A step by the forces of [`LISTED_PAIRS`], which become zero.
+pub const MOVE_LISTED: Kernel<ClusterStepArgs> = Kernel::new("listed_pairs", "move_listed", 256);
 
 /// Kernels that make a step by lists of clusters.
 #[derive(Clone, Copy)]

@@ -41,6 +41,7 @@ pub const MODULES: &[Module] = modules![
     "cluster_list",
     "cluster_step",
     "listed_forces",
+    "listed_pairs" and "listed_pairs.sm_90",
     "lists",
     "boxes",
     "bodies",

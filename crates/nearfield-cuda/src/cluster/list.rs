@@ -10,7 +10,7 @@ use bytemuck::Zeroable;
 use nearfield_core::{Report, Result};
 use nearfield_kernels::{
     Float4, Ptr,
-    kernels::{self, CLUSTER, LISTED_FORCES, SEGMENT, StepKernels},
+    kernels::{self, CLUSTER, LISTED_FORCES, LISTED_PAIRS, SEGMENT, StepKernels},
     layouts::{
         self, ClusterControl, ClusterListArgs, ClusterStepArgs, ClustersMovedArgs, GatherArgs, Integrator, Law,
         ListedArgs, Results, Segment, Status,
@@ -45,6 +45,8 @@ pub(crate) struct ClusterList {
     entry: Buffer<u32>,
     control: Buffer<ClusterControl>,
     valid: bool,
+    /// Whether it holds each pair once.
+    once: bool,
     /// Whether it is known that there was room for the list.
     settled: bool,
     /// Whether the list serves the present positions, where that is known without looking at them.
@@ -59,8 +61,8 @@ pub(crate) struct ClusterList {
 pub(crate) struct StepQuery<'a> {
     pub physics: &'a Physics,
     pub state: &'a mut State,
-    /// Where positions go.
-    pub next: &'a mut Buffer<Float4>,
+    /// Room for positions or forces.
+    pub spare: &'a mut Buffer<Float4>,
     pub integrator: Integrator,
     pub status: Ptr<Status>,
     pub kernels: StepKernels,
@@ -85,6 +87,7 @@ impl ClusterList {
             entry: Buffer::new(gpu, "lists of clusters"),
             control: Buffer::new(gpu, "lists of clusters"),
             valid: false,
+            once: false,
             settled: false,
             known: None,
             age: 0,
@@ -125,15 +128,17 @@ impl ClusterList {
     }
 
     /// Enqueues the listing of what is near each cluster of particles in the order of `grid`, which was built for range
-    /// and skin. Whether there was room for it is seen later: by [`ClusterList::settle`], or at the end of steps.
+    /// and skin; each pair `once` or from both sides. Whether there was room for it is seen later: by [`ClusterList::settle`], or at the end of steps.
     pub fn build(
         &mut self,
         physics: &Physics,
         state: &State,
         grid: &Grid,
+        once: bool,
         budget: u64,
         report: &mut Report,
     ) -> Result<()> {
+        self.once = once;
         let first = state.len().div_ceil(CLUSTER) as u64 * FIRST_CHUNKS;
         self.enqueue(physics, state, grid, self.room().max(first).min(budget / BYTES_PER_CHUNK))?;
         report.list_builds += 1;
@@ -190,15 +195,23 @@ impl ClusterList {
             segment_capacity: self.segment.len() as u32,
             slack: grid.slack(),
             margin: 0.5 * self.skin + physics.slack,
+            once: u32::from(self.once),
+            unused: 0,
         };
         // SAFETY: positions are n, sorted by the grid's cells; segments and entries have room for what is said.
         unsafe { launch(&*self.gpu, kernels::LIST_CLUSTERS, 32 * n_clusters as u64, &arguments) }
     }
 
-    /// Enqueues the forces on all particles.
+    /// Whether forces are added to: they must be zero before.
+    pub fn scatters(&self) -> bool {
+        self.once
+    }
+
+    /// Enqueues the forces on all particles. Exact ones take lists of both sides.
     pub fn forces(&self, physics: &Physics, state: &State, results: Results, exact: bool, energy: bool) -> Result<()> {
-        let kernel = LISTED_FORCES.choose(&physics.law, exact, energy);
-        let arguments = self.listed(physics, state, results);
+        let family = if self.once { LISTED_PAIRS } else { LISTED_FORCES };
+        let kernel = family.choose(&physics.law, exact, energy);
+        let arguments = self.listed(physics, state, results, 0);
         let n_clusters = state.len().div_ceil(CLUSTER) as u64;
         // SAFETY: particles and results are n, in the order that the list was made in.
         unsafe { launch(&*self.gpu, kernel, 32 * n_clusters, &arguments) }
@@ -207,28 +220,38 @@ impl ClusterList {
     /// Makes steps from forces at `step` on, at most `most`, at positions that the list serves; waits for the device to
     /// know how many there were. None are made where there was no room for the list: it is to be settled first.
     pub fn steps(&mut self, query: StepQuery, grid: &Grid, step: u64, most: u64) -> Result<u64> {
-        let StepQuery { physics, state, next, integrator, status, kernels } = query;
+        let StepQuery { physics, state, spare, integrator, status, kernels } = query;
         let n = state.len();
-        next.resize(n)?;
+        spare.resize(n)?;
+        if self.once {
+            spare.zero()?;
+        }
         let asked = (self.life.saturating_sub(self.age) + SPARE_STEPS).clamp(1, MOST_STEPS.min(most));
-        let kernel = if physics.law.is_plain_lennard_jones() { kernels.uniform_lj } else { kernels.any };
-        let threads = 32 * n.div_ceil(CLUSTER).div_ceil(kernels.clusters) as u64;
+        let clusters = n.div_ceil(CLUSTER);
         for step in step..step + asked {
+            let force = if self.once { spare.ptr() } else { Ptr::NULL };
             let arguments = ClusterStepArgs {
-                listed: self.listed(physics, state, Results::default()),
+                listed: self.listed(physics, state, Results { force, ..Results::default() }, step),
                 integrator,
                 particles: state.particles(),
-                next: next.ptr(),
+                next: if self.once { state.moving.position.ptr() } else { spare.ptr() },
                 reference: grid.slots(),
                 status,
-                control: self.control.ptr(),
-                step,
                 limit2: self.limit * self.limit,
                 unused: 0,
             };
             // SAFETY: all arrays of particles have n elements.
-            unsafe { launch(&*self.gpu, kernel, threads, &arguments)? };
-            std::mem::swap(&mut state.moving.position, next);
+            unsafe {
+                if self.once {
+                    let kernel = LISTED_PAIRS.choose(&physics.law, false, false);
+                    launch(&*self.gpu, kernel, 32 * clusters as u64, &arguments.listed)?;
+                    launch(&*self.gpu, kernels::MOVE_LISTED, n as u64, &arguments)?;
+                } else {
+                    let kernel = if physics.law.is_plain_lennard_jones() { kernels.uniform_lj } else { kernels.any };
+                    launch(&*self.gpu, kernel, 32 * clusters.div_ceil(kernels.clusters) as u64, &arguments)?;
+                    std::mem::swap(&mut state.moving.position, spare);
+                }
+            }
         }
         let ClusterControl { rebuild_at, done, chunks, .. } = self.control()?;
         self.settled = u64::from(chunks) <= self.room();
@@ -238,8 +261,8 @@ impl ClusterList {
             (_, true) => done - step + 1,
             (_, false) => 0,
         };
-        if (asked - made) % 2 == 1 {
-            std::mem::swap(&mut state.moving.position, next);
+        if !self.once && (asked - made) % 2 == 1 {
+            std::mem::swap(&mut state.moving.position, spare);
         }
         if made == 0 {
             return Ok(0);
@@ -250,7 +273,7 @@ impl ClusterList {
         Ok(made)
     }
 
-    fn listed(&self, physics: &Physics, state: &State, results: Results) -> ListedArgs {
+    fn listed(&self, physics: &Physics, state: &State, results: Results, step: u64) -> ListedArgs {
         let grid = layouts::Grid { n_classes: 1, slot: state.moving.position.ptr(), ..Default::default() };
         ListedArgs {
             gather: GatherArgs {
@@ -264,6 +287,8 @@ impl ClusterList {
             },
             segment: self.segment.ptr(),
             entry: self.entry.ptr(),
+            control: self.control.ptr(),
+            step,
         }
     }
 

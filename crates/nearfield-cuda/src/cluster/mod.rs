@@ -81,7 +81,8 @@ impl Clusters {
         }
         // Nothing needs the forces any more: they are of positions before.
         state.permute(self.grid.order().ptr(), &mut Buffer::new(&self.gpu, "forces"))?;
-        self.list.build(physics, state, &self.grid, self.memory_budget, report)
+        let once = self.variant == Variant::List && !self.deterministic;
+        self.list.build(physics, state, &self.grid, once, self.memory_budget, report)
     }
 
     /// Makes sure that there is a list where there is to be one, or turns to pairs where it would exceed the budget. To
@@ -99,7 +100,7 @@ impl Clusters {
 
     /// Whether forces are added to: results must be zero before, and order-independent sums be finished after.
     pub(crate) fn scatters(&self) -> bool {
-        !self.variant.uses_list() && self.candidates().scatters(self.pairs())
+        if self.variant.uses_list() { self.list.scatters() } else { self.candidates().scatters(self.pairs()) }
     }
 
     /// Enqueues the forces at positions that it was built for or [`Clusters::is_fresh`] of.

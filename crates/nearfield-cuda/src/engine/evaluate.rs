@@ -61,7 +61,7 @@ impl Loaded {
                 return Ok(step);
             };
             let (integrator, status) = (integrator.layout(), totalizer.status().ptr());
-            let query = StepQuery { physics, state, next: next_position, integrator, status, kernels };
+            let query = StepQuery { physics, state, spare: next_position, integrator, status, kernels };
             let made = list.steps(query, grid, step, before - step)?;
             if made > 0 {
                 self.account(made)?;

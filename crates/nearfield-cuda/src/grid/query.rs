@@ -6,7 +6,7 @@ use nearfield_core::{ListKind, Result};
 use nearfield_kernels::{
     Float4, Ptr,
     kernels::{self, CELL_FORCES, CLUSTER, CLUSTER_FORCES, ListKernels},
-    layouts::{self, Box3, GatherArgs, Law, ListArgs, Results},
+    layouts::{self, Box3, GatherArgs, Law, ListArgs, NumberArgs, Results},
 };
 
 /// Where candidates come from.
@@ -137,6 +137,13 @@ pub struct ListQuery {
 /// As [`Gpu::allocate`] and [`Gpu::launch`].
 pub unsafe fn count(gpu: &dyn Gpu, candidates: Candidates, query: &ListQuery, list: &mut DeviceList) -> Result<()> {
     list.start(candidates.n())?;
+    if let Candidates::Cells(grid) = candidates {
+        list.number.resize(grid.n)?;
+        let (particle, id, number) = (grid.particle.ptr(), query.id, list.number.ptr());
+        let arguments = NumberArgs { particle, id, number, n: grid.n as u32, unused: 0 };
+        // SAFETY: the caller's promise, and a number for each slot.
+        unsafe { launch(gpu, kernels::NUMBER_SLOTS, grid.n as u64, &arguments)? };
+    }
     let kernel = list_kernels(candidates, query).count;
     // SAFETY: the caller's promise, and a count for each row.
     unsafe { launch(gpu, kernel, candidates.threads(), &arguments(candidates, query, list)) }
@@ -173,7 +180,7 @@ fn arguments(candidates: Candidates, query: &ListQuery, list: &DeviceList) -> Li
         law: query.law,
         space: query.space,
         grid: candidates.layout(),
-        id: query.id,
+        id: if let Candidates::Cells(_) = candidates { list.number.ptr() } else { query.id },
         count: list.count.ptr(),
         offset: list.offset.ptr(),
         index: list.index.ptr(),

@@ -12,6 +12,8 @@ enum Images {
 };
 
 struct Cluster {
+    static const bool AHEAD = false; // see `walk_rows`
+
     float4 x[CLUSTER];
     u32 first;
     u32 least;  // slots before are not searched for

@@ -27,9 +27,13 @@ enum Meetings {
     DIRECTED, // all in its own class, and those of larger classes
     ONCE,     // those from its own first slot on, so that each pair is met once but within a cluster
     NO_IMAGE, // all, without knowing their images
+    LISTED_ONCE, // as ONCE, without knowing their images
 };
 
 template <class L, bool EXACT, bool ENERGY, Meetings MEETINGS> struct Gather : Cluster {
+    static const bool ALL_ONCE = MEETINGS == ONCE || MEETINGS == LISTED_ONCE;
+    static const bool LISTED = MEETINGS == NO_IMAGE || MEETINGS == LISTED_ONCE;
+
     const GatherArgs& a;
     u32 count;
     u32 kind[CLUSTER];
@@ -48,12 +52,19 @@ template <class L, bool EXACT, bool ENERGY, Meetings MEETINGS> struct Gather : C
 
     __device__ u32 kind_of(u32 slot) const {
         if (!L::TYPED || a.law.n_types == 1) return 0;
-        return __float_as_uint(a.velocity[place_of(a.grid, slot)].w);
+        return __float_as_uint(a.velocity[place_of_slot(slot)].w);
+    }
+
+    // Particles that are listed are in the order of the cells.
+    __device__ u32 place_of_slot(u32 slot) const {
+        return LISTED ? slot : place_of(a.grid, slot);
     }
 
     // One candidate in each lane. Chunks that need no care are most of them.
-    __device__ void meet(u32 slot, bool valid, u32 image) {
-        const float4 xj = slots[slot];
+    __device__ void meet(const Candidate& c) {
+        const u32 slot = c.slot, image = c.image;
+        const bool valid = c.valid;
+        const float4 xj = c.x;
         if (MEETINGS == NO_IMAGE) {
             pairs<NEAREST, true>(slot, xj, valid, image);
         } else if (Traits<L>::COSTLY) {
@@ -83,12 +94,12 @@ template <class L, bool EXACT, bool ENERGY, Meetings MEETINGS> struct Gather : C
         const u32 own = IMAGES == SHIFTED && image != HOME_IMAGE ? (u32)CLUSTER : slot - first;
         const u32 allowed = own < CLUSTER ? active & ~(1u << own) : active;
         // Pairs within a cluster are met from both sides, at whichever image.
-        const bool both = MEETINGS == ONCE ? !CARE || slot - first >= count : !Traits<L>::ONE_RANGE && once;
+        const bool both = ALL_ONCE ? !CARE || slot - first >= count : !Traits<L>::ONE_RANGE && once;
         Sums<EXACT, ENERGY> other = zero_sums<Sums<EXACT, ENERGY>>();
         bool any = false;
 #pragma unroll(Traits<L>::COSTLY ? 1 : CLUSTER)
         for (u32 k = 0; k < CLUSTER; ++k) {
-            if (CARE && MEETINGS != NO_IMAGE && !(active >> k & 1)) continue;
+            if (CARE && !LISTED && !(active >> k & 1)) continue;
             const Shift d = separation<IMAGES>(a.space, x[k], xj, shift, image);
             const float r2 = squared_length(d.x, d.y, d.z);
             const float range = Traits<L>::ONE_RANGE ? a.law.cutoff : fmaxf(radius_of(x[k]), radius_of(xj));
@@ -98,14 +109,14 @@ template <class L, bool EXACT, bool ENERGY, Meetings MEETINGS> struct Gather : C
             const PairForce pair = L::template evaluate<ENERGY>(a.law, r2, range, kind[k], kind_j);
             const float f = in ? pair.f_over_r : 0.0f;
             sums[k].add(a.law, d.x, d.y, d.z, f, pair.energy, r2);
-            if (MEETINGS == ONCE || both) {
+            if (ALL_ONCE || both) {
                 other.add(a.law, -d.x, -d.y, -d.z, f, pair.energy, r2);
                 any = any || in;
             }
         }
         // Cheaper than to keep account of pairs in range.
-        if (MEETINGS == ONCE && !ENERGY) any = other.x != 0 || other.y != 0 || other.z != 0;
-        if (both && any) scatter_sums(a.results, a.law, a.n, place_of(a.grid, slot), other);
+        if (ALL_ONCE && !ENERGY) any = other.x != 0 || other.y != 0 || other.z != 0;
+        if (both && any) scatter_sums(a.results, a.law, a.n, place_of_slot(slot), other);
     }
 
     __device__ void store() {
@@ -120,8 +131,8 @@ template <class L, bool EXACT, bool ENERGY, Meetings MEETINGS> struct Gather : C
         }
         const u32 lane = threadIdx.x % WARP, k = lane / 4;
         if (lane % 4 != 0 || k >= count) return;
-        const u32 place = place_of(a.grid, first + k);
-        if (MEETINGS == ONCE || (MEETINGS == DIRECTED && a.grid.n_classes > 1)) {
+        const u32 place = place_of_slot(first + k);
+        if (ALL_ONCE || (MEETINGS == DIRECTED && a.grid.n_classes > 1)) {
             scatter_sums(a.results, a.law, a.n, place, total);
         } else {
             store_sums(a.results, a.law, a.n, place, total);

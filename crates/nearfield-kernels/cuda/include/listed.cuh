@@ -22,6 +22,10 @@ __device__ inline u32 clusters_of(u32 n) {
     return (n + CLUSTER - 1) / CLUSTER;
 }
 
+__device__ inline bool serves(const ListedArgs& a) {
+    return a.control->rebuild_at > a.step;
+}
+
 // Takes the list of a cluster 32 entries at a time to `v`, by way of shared memory for a segment of each warp. The next
 // positions are on their way meanwhile; entries are not, since no registers are left to keep them in.
 template <class V>
@@ -33,9 +37,16 @@ __device__ inline void meet_listed(const ListedArgs& a, u32 cluster, u32 (&entri
         if (segment.begin == segment.end) continue;
         const u32* entry = a.entry + (u64)segment.begin * WARP + threadIdx.x % WARP;
         const u32 end = begin + (segment.end - segment.begin) * WARP;
-        // Each lane reads what it has written.
-#pragma unroll 4
-        for (u32 k = begin; k < end; k += WARP, entry += WARP) entries[k] = *entry;
+        // Each lane reads what it has written. Several loads are on their way at a time.
+        for (u32 k = begin; k < end; k += 4 * WARP, entry += 4 * WARP) {
+            u32 part[4];
+#pragma unroll
+            for (u32 q = 0; q < 4; ++q) part[q] = k + q * WARP < end ? entry[q * WARP] : LISTED_NONE;
+#pragma unroll
+            for (u32 q = 0; q < 4; ++q) {
+                if (k + q * WARP < end) entries[k + q * WARP] = part[q];
+            }
+        }
         const bool by_pair = segment.by_pair || v.is_partial();
         u32 next = entries[begin];
         float4 next_x = v.slots[next & LISTED_SLOT];

@@ -162,14 +162,35 @@ __device__ inline void append_rows(Scratch& scratch, Pending& pending, u32 start
     pending.candidates += __shfl_sync(ALL_LANES, sum, WARP - 1);
 }
 
-// Takes the candidates of the waiting rows 32 at a time to `v.meet(slot, valid, image)`.
+// What a lane meets.
+struct Candidate {
+    u32 slot, image;
+    bool valid;
+    float4 x;
+};
+
+// Candidate `t` of `total`, whose row is found from that of an earlier one on.
+template <class V> __device__ inline Candidate candidate(const Scratch& scratch, u32 t, u32 total, u32& row, const V& v) {
+    const bool valid = t < total;
+    while (valid && scratch.end[row] <= t) ++row;
+    const u32 slot = valid ? t + scratch.offset[row] : 0;
+    return {slot, scratch.image[row], valid, v.slots[slot]};
+}
+
+// Takes the candidates of the waiting rows 32 at a time to `v.meet(candidate)`. The next are on their way meanwhile where
+// visitors have registers left to keep them in.
 template <class V> __device__ inline void walk_rows(const Scratch& scratch, u32 total, V& v) {
-    u32 row = 0;
-    for (u32 base = 0; base < total; base += WARP) {
-        const u32 t = base + threadIdx.x % WARP;
-        const bool valid = t < total;
-        while (valid && scratch.end[row] <= t) ++row;
-        v.meet(valid ? t + scratch.offset[row] : 0, valid, scratch.image[row]);
+    u32 row = 0, t = threadIdx.x % WARP;
+    Candidate next;
+    if (V::AHEAD && total > 0) next = candidate(scratch, t, total, row, v);
+    for (u32 base = 0; base < total; base += WARP, t += WARP) {
+        if (V::AHEAD) {
+            const Candidate now = next;
+            if (base + WARP < total) next = candidate(scratch, t + WARP, total, row, v);
+            v.meet(now);
+        } else {
+            v.meet(candidate(scratch, t, total, row, v));
+        }
     }
 }
 
@@ -182,22 +203,19 @@ __device__ inline void walk_rows_within(Scratch& scratch, Pending& pending, bool
     u32 row = 0, queued = pending.queued;
     for (u32 base = 0; base < total || (finish && queued > 0); base += WARP) {
         if (base < total) {
-            const u32 t = base + lane;
-            const bool valid = t < total;
-            while (valid && scratch.end[row] <= t) ++row;
-            const u32 slot = valid ? t + scratch.offset[row] : 0, image = scratch.image[row];
-            const float4 p = v.slots[slot];
+            const Candidate found = candidate(scratch, base + lane, total, row, v);
+            const float4 p = found.x;
             Shift s = {0.0f, 0.0f, 0.0f};
-            if (image != HOME_IMAGE) s = shift_of(space, image);
+            if (found.image != HOME_IMAGE) s = shift_of(space, found.image);
             const float range = fmaxf(v.radius, v.radius_of(p));
             const float r2 =
                 squared_length(gap(box, 0, p.x, p.x, s.x), gap(box, 1, p.y, p.y, s.y), gap(box, 2, p.z, p.z, s.z));
-            const bool near = valid && r2 < range * range;
+            const bool near = found.valid && r2 < range * range;
             const u32 votes = __ballot_sync(ALL_LANES, near);
             if (near) {
                 const u32 place = queued + __popc(votes & lanes_below());
-                scratch.queue_slot[place] = slot;
-                scratch.queue_image[place] = image;
+                scratch.queue_slot[place] = found.slot;
+                scratch.queue_image[place] = found.image;
             }
             queued += __popc(votes);
             __syncwarp();
@@ -206,7 +224,8 @@ __device__ inline void walk_rows_within(Scratch& scratch, Pending& pending, bool
             const u32 taken = smaller(queued, (u32)WARP);
             queued -= taken;
             const u32 place = queued + smaller(lane, taken - 1);
-            v.meet(scratch.queue_slot[place], lane < taken, scratch.queue_image[place]);
+            const u32 slot = scratch.queue_slot[place];
+            v.meet({slot, scratch.queue_image[place], lane < taken, v.slots[slot]});
             __syncwarp();
         }
     }
@@ -281,6 +300,6 @@ template <class V> __device__ inline void meet_all(u32 n, V& v) {
     for (u32 base = 0; base < n; base += WARP) {
         const u32 slot = base + threadIdx.x % WARP;
         const bool valid = slot < n;
-        v.meet(valid ? slot : 0, valid, HOME_IMAGE);
+        v.meet({valid ? slot : 0, HOME_IMAGE, valid, v.slots[valid ? slot : 0]});
     }
 }

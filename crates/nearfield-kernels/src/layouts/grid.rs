@@ -91,6 +91,20 @@ layouts! {
         pub slack: f32,
     }
 
+    /// Arguments of `number_slots`.
+    pub struct NumberArgs {
+        /// Place of each slot's particle.
+        pub particle: Ptr<u32>,
+        /// Input index of each place.
+        pub id: Ptr<u32>,
+        /// Input index of each slot's particle.
+        pub number: Ptr<u32>,
+        /// Number of particles.
+        pub n: u32,
+        /// Zero.
+        pub unused: u32,
+    }
+
     /// Arguments of the kernels that list neighbours.
     pub struct ListArgs {
         /// The interaction, for ranges.
@@ -99,7 +113,7 @@ layouts! {
         pub space: Box3,
         /// The cells; only `slot` and `particle` for `brute`.
         pub grid: Grid,
-        /// Input index of each place.
+        /// Input index of each slot's particle.
         pub id: Ptr<u32>,
         /// Entries of each row, by input index; counted, or counted down while rows are filled.
         pub count: Ptr<u32>,

@@ -1,0 +1,43 @@
+// Steps by lists of clusters.
+//
+// The host enqueues steps without knowing how long the list will serve. A step that finds a particle too far from where
+// it was when the list was made forbids the next, and steps that are forbidden do nothing. So no pair is missed, and
+// the host need not wait for a step.
+
+#pragma once
+
+#include "integrate.cuh"
+#include "listed.cuh"
+
+// Whether the step is not forbidden; it is then noted as done.
+__device__ inline bool begin_step(const ClusterStepArgs& a) {
+    if (!serves(a.listed)) return false;
+    if (thread_index() == 0) a.listed.control->done = a.listed.step;
+    return true;
+}
+
+__device__ inline void move_particle(const ClusterStepArgs& a, u32 i, const float4& force) {
+    Particles to = a.particles;
+    to.position = a.next;
+    Moving p = load_moving(a.particles, i);
+    const float4 start = p.position;
+    // A particle that has failed is left where it was, so that coordinates stay finite until the run is stopped.
+    if (!all_finite(force)) {
+        atomicMin(&a.status->force, failure(a.listed.step, a.particles.id[i]));
+        to.position[i] = start;
+        return;
+    }
+    // Random numbers take input indices; nothing else does.
+    const u32 id = a.integrator.langevin ? a.particles.id[i] : 0;
+    finish_step(a.integrator, p, force);
+    start_step(a.integrator, p, force, id, a.listed.step + 1);
+    if (!all_finite(p.position)) {
+        atomicMin(&a.status->position, failure(a.listed.step + 1, a.particles.id[i]));
+        to.position[i] = start;
+        return;
+    }
+    store_moving(to, i, p);
+    if (has_moved(a.integrator.space, a.reference[i], p.position, a.limit2)) {
+        atomicMin(&a.listed.control->rebuild_at, a.listed.step + 1);
+    }
+}
