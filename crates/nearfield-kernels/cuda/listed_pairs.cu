@@ -35,5 +35,5 @@ KERNEL_MIN_BLOCKS(move_listed, ClusterStepArgs, 256, 6) {
     float4& sum = a.listed.gather.results.force[i];
     const float4 force = sum;
     sum = make_float4(0.0f, 0.0f, 0.0f, 0.0f);
-    move_particle(a, i, force);
+    move_particle(a, i, load_moving(a.particles, i), force);
 }

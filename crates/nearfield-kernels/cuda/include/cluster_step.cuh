@@ -16,11 +16,12 @@ __device__ inline bool begin_step(const ClusterStepArgs& a) {
     return true;
 }
 
-__device__ inline void move_particle(const ClusterStepArgs& a, u32 i, const float4& force) {
+// The rest of a step of particle `i`, `p`, and the beginning of the next.
+__device__ inline void move_particle(const ClusterStepArgs& a, u32 i, Moving p, const float4& force) {
     Particles to = a.particles;
     to.position = a.next;
-    Moving p = load_moving(a.particles, i);
-    const float4 start = p.position;
+    // Read before anything is written, so that it need not be waited for then.
+    const float4 reference = a.reference[i], start = p.position;
     // A particle that has failed is left where it was, so that coordinates stay finite until the run is stopped.
     if (!all_finite(force)) {
         atomicMin(&a.status->force, failure(a.listed.step, a.particles.id[i]));
@@ -37,7 +38,7 @@ __device__ inline void move_particle(const ClusterStepArgs& a, u32 i, const floa
         return;
     }
     store_moving(to, i, p);
-    if (has_moved(a.integrator.space, a.reference[i], p.position, a.limit2)) {
+    if (has_moved(a.integrator.space, reference, p.position, a.limit2)) {
         atomicMin(&a.listed.control->rebuild_at, a.listed.step + 1);
     }
 }

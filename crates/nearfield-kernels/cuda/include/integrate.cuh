@@ -45,6 +45,9 @@ __device__ inline void kick(const Integrator& how, Moving& p, const float4& forc
 
 // Shortens a velocity that would carry the particle beyond the displacement limit.
 __device__ inline void limit(const Integrator& how, Moving& p) {
+    // Nearly always, and without square roots.
+    const float below = how.speed_limit * how.speed_limit * 0.9999f;
+    if (p.velocity.x * p.velocity.x + p.velocity.y * p.velocity.y + p.velocity.z * p.velocity.z < below) return;
     if (how.speed_limit == infinity()) return;
     // In f64: capped forces of 1e30 square beyond f32.
     const double x = p.velocity.x, y = p.velocity.y, z = p.velocity.z;
