@@ -8,8 +8,6 @@
 // A candidate is listed if it is near any particle of the cluster, now or before the list is built anew; once, whatever
 // its images near the cluster are.
 struct Listing : Cluster {
-    static const bool AHEAD = true;
-
     const ClusterListArgs& a;
     u32* stage;
     u32 count, staged;
@@ -90,11 +88,10 @@ struct Listing : Cluster {
         u32 nearest = image, near = 0;
 #pragma unroll
         for (int k = CLUSTER - 1; k >= 0; --k) {
-            u32 at;
-            const Shift d = separation<NEAREST>(a.space, x[k], xj, {0.0f, 0.0f, 0.0f}, at);
+            const Shift d = separation<NEAREST>(a.space, x[k], xj, {0.0f, 0.0f, 0.0f});
             if (squared_length(d.x, d.y, d.z) < reach2 && own != k && k < count) {
                 near |= 1u << k;
-                nearest = at;
+                nearest = nearest_image(a.space, x[k], xj);
             }
         }
         return (near & (0u - near) & active) != 0 && nearest == image;
@@ -144,7 +141,7 @@ KERNEL_MIN_BLOCKS(list_clusters, ClusterListArgs, WARPS_PER_BLOCK* WARP, 6) {
     __shared__ Scratch scratch[WARPS_PER_BLOCK];
     __shared__ u32 stage[WARPS_PER_BLOCK][STAGE];
     const u32 number = thread_index() / WARP, warp = threadIdx.x / WARP;
-    const ClusterPlace cluster = find_cluster(a.grid, a.n, number);
+    const ClusterPlace cluster = consecutive_cluster(a.n, number);
     if (cluster.count == 0) return;
     Listing listing(a, cluster, number, stage[warp]);
     search_cells<false>(a.grid, a.space, a.slack, cluster, cluster_bounds(listing.x), scratch[warp], listing);

@@ -5,14 +5,19 @@
 #include "cluster_step.cuh"
 #include "gather.cuh"
 
+// The warps of a block take consecutive clusters at a time, so that they find each other's particles in the cache.
 template <class L, bool ENERGY> __device__ inline void listed_pairs(const ListedArgs& a) {
     __shared__ u32 entries[WARPS_PER_BLOCK * SEGMENT_ENTRIES];
-    const u32 number = thread_index() / WARP;
-    const ClusterPlace cluster = consecutive_cluster(a.gather.n, number);
-    if (cluster.count == 0 || !serves(a)) return;
-    Gather<L, false, ENERGY, LISTED_ONCE> gather(a.gather, cluster);
-    meet_listed(a, number, entries, gather);
-    gather.store();
+    if (!serves(a)) return;
+    u32 number = blockIdx.x * WARPS_PER_BLOCK * a.clusters_per_warp + threadIdx.x / WARP;
+#pragma unroll 1
+    for (u32 k = 0; k < a.clusters_per_warp; ++k, number += WARPS_PER_BLOCK) {
+        const ClusterPlace cluster = consecutive_cluster(a.gather.n, number);
+        if (cluster.count == 0) return;
+        Gather<L, false, ENERGY, LISTED_ONCE> gather(a.gather, cluster);
+        meet_listed(a, number, entries, gather);
+        gather.store();
+    }
 }
 
 KERNEL_MIN_BLOCKS(pairs_uniform, ListedArgs, WARPS_PER_BLOCK* WARP, 6) {

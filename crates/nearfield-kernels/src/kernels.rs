@@ -98,29 +98,13 @@ pub const LISTED_PAIRS: ByForce<Kernel<ListedArgs>> = ByForce {
 /// A step by the forces of [`LISTED_PAIRS`], which become zero.
 pub const MOVE_LISTED: Kernel<ClusterStepArgs> = Kernel::new("listed_pairs", "move_listed", 256);
 
-/// Kernels that make a step by lists of clusters.
-#[derive(Clone, Copy)]
-pub struct StepKernels {
-    /// For plain Lennard-Jones.
-    pub uniform_lj: Kernel<ClusterStepArgs>,
-    /// For any interaction.
-    pub any: Kernel<ClusterStepArgs>,
-    /// Clusters that a warp takes.
-    pub clusters: usize,
-}
+/// Forces and a step, by lists most of which are empty; a thread for each particle. In f32 and without energies.
+pub const STEP_SPARSE: ByForce<Kernel<ClusterStepArgs>> =
+    steps(Kernel::new("cluster_step", "step_sparse_uniform", 128), Kernel::new("cluster_step", "step_sparse_any", 128));
 
-/// Steps where clusters have many neighbours.
-pub const STEP: StepKernels = StepKernels {
-    uniform_lj: Kernel::new("cluster_step", "step_uniform", 128),
-    any: Kernel::new("cluster_step", "step_any", 128),
-    clusters: 1,
-};
-/// Steps where most clusters have none.
-pub const STEP_SPARSE: StepKernels = StepKernels {
-    uniform_lj: Kernel::new("cluster_step", "step_sparse_uniform", 128),
-    any: Kernel::new("cluster_step", "step_sparse_any", 128),
-    clusters: 4,
-};
+const fn steps<A>(uniform_lj: Kernel<A>, any: Kernel<A>) -> ByForce<Kernel<A>> {
+    ByForce { fast: any, energy: any, exact: any, exact_energy: any, uniform_lj, scaled_lj: any }
+}
 
 /// Forces by testing all pairs; a warp for each [`CLUSTER`].
 pub const BRUTE_FORCES: ByForce<Kernel<GatherArgs>> = ByForce {

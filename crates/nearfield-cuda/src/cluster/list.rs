@@ -9,8 +9,8 @@ use crate::{
 use bytemuck::Zeroable;
 use nearfield_core::{Report, Result};
 use nearfield_kernels::{
-    Float4, Ptr,
-    kernels::{self, CLUSTER, LISTED_FORCES, LISTED_PAIRS, SEGMENT, StepKernels},
+    Float4, Kernel, Ptr,
+    kernels::{self, CLUSTER, LISTED_FORCES, LISTED_PAIRS, SEGMENT, STEP_SPARSE},
     layouts::{
         self, ClusterControl, ClusterListArgs, ClusterStepArgs, ClustersMovedArgs, GatherArgs, Integrator, Law,
         ListedArgs, Results, Segment, Status,
@@ -34,6 +34,13 @@ const SPARE_STEPS: u64 = 2;
 
 /// Most steps enqueued at a time.
 const MOST_STEPS: u64 = 100;
+
+/// Clusters to a warp that adds both sides of pairs, where there are many: fewer and longer blocks share caches better,
+/// and launches that are forbidden cost less.
+const MOST_PER_WARP: usize = 8;
+
+/// Warps below which there are not enough to share work among.
+const ENOUGH_WARPS: usize = 25_000;
 
 /// Lists for the particles in memory order, of everything within range and skin.
 pub(crate) struct ClusterList {
@@ -65,7 +72,6 @@ pub(crate) struct StepQuery<'a> {
     pub spare: &'a mut Buffer<Float4>,
     pub integrator: Integrator,
     pub status: Ptr<Status>,
-    pub kernels: StepKernels,
 }
 
 impl ClusterList {
@@ -209,9 +215,11 @@ impl ClusterList {
 
     /// Enqueues the forces on all particles. Exact ones take lists of both sides.
     pub fn forces(&self, physics: &Physics, state: &State, results: Results, exact: bool, energy: bool) -> Result<()> {
-        let family = if self.once { LISTED_PAIRS } else { LISTED_FORCES };
-        let kernel = family.choose(&physics.law, exact, energy);
         let arguments = self.listed(physics, state, results, 0);
+        if self.once {
+            return self.add_pairs(LISTED_PAIRS.choose(&physics.law, exact, energy), state.len(), &arguments);
+        }
+        let kernel = LISTED_FORCES.choose(&physics.law, exact, energy);
         let n_clusters = state.len().div_ceil(CLUSTER) as u64;
         // SAFETY: particles and results are n, in the order that the list was made in.
         unsafe { launch(&*self.gpu, kernel, 32 * n_clusters, &arguments) }
@@ -220,14 +228,13 @@ impl ClusterList {
     /// Makes steps from forces at `step` on, at most `most`, at positions that the list serves; waits for the device to
     /// know how many there were. None are made where there was no room for the list: it is to be settled first.
     pub fn steps(&mut self, query: StepQuery, grid: &Grid, step: u64, most: u64) -> Result<u64> {
-        let StepQuery { physics, state, spare, integrator, status, kernels } = query;
+        let StepQuery { physics, state, spare, integrator, status } = query;
         let n = state.len();
         spare.resize(n)?;
         if self.once {
             spare.zero()?;
         }
         let asked = (self.life.saturating_sub(self.age) + SPARE_STEPS).clamp(1, MOST_STEPS.min(most));
-        let clusters = n.div_ceil(CLUSTER);
         for step in step..step + asked {
             let force = if self.once { spare.ptr() } else { Ptr::NULL };
             let arguments = ClusterStepArgs {
@@ -240,17 +247,14 @@ impl ClusterList {
                 limit2: self.limit * self.limit,
                 unused: 0,
             };
-            // SAFETY: all arrays of particles have n elements.
-            unsafe {
-                if self.once {
-                    let kernel = LISTED_PAIRS.choose(&physics.law, false, false);
-                    launch(&*self.gpu, kernel, 32 * clusters as u64, &arguments.listed)?;
-                    launch(&*self.gpu, kernels::MOVE_LISTED, n as u64, &arguments)?;
-                } else {
-                    let kernel = if physics.law.is_plain_lennard_jones() { kernels.uniform_lj } else { kernels.any };
-                    launch(&*self.gpu, kernel, 32 * clusters.div_ceil(kernels.clusters) as u64, &arguments)?;
-                    std::mem::swap(&mut state.moving.position, spare);
-                }
+            if self.once {
+                self.add_pairs(LISTED_PAIRS.choose(&physics.law, false, false), n, &arguments.listed)?;
+                // SAFETY: all arrays of particles have n elements.
+                unsafe { launch(&*self.gpu, kernels::MOVE_LISTED, n as u64, &arguments)? };
+            } else {
+                // SAFETY: as above.
+                unsafe { launch(&*self.gpu, STEP_SPARSE.choose(&physics.law, false, false), n as u64, &arguments)? };
+                std::mem::swap(&mut state.moving.position, spare);
             }
         }
         let ClusterControl { rebuild_at, done, chunks, .. } = self.control()?;
@@ -273,6 +277,13 @@ impl ClusterList {
         Ok(made)
     }
 
+    /// Enqueues the addition of forces to zeros, from a list that holds each pair once, unless the list does not serve.
+    fn add_pairs(&self, kernel: Kernel<ListedArgs>, n: usize, arguments: &ListedArgs) -> Result<()> {
+        let clusters = n.div_ceil(CLUSTER);
+        // SAFETY: particles and results are n, in the order that the list was made in.
+        unsafe { launch(&*self.gpu, kernel, 32 * clusters.div_ceil(per_warp(n)) as u64, arguments) }
+    }
+
     fn listed(&self, physics: &Physics, state: &State, results: Results, step: u64) -> ListedArgs {
         let grid = layouts::Grid { n_classes: 1, slot: state.moving.position.ptr(), ..Default::default() };
         ListedArgs {
@@ -289,6 +300,8 @@ impl ClusterList {
             entry: self.entry.ptr(),
             control: self.control.ptr(),
             step,
+            clusters_per_warp: per_warp(state.len()) as u32,
+            unused: 0,
         }
     }
 
@@ -300,4 +313,9 @@ impl ClusterList {
     pub fn bytes(&self) -> u64 {
         self.segment.bytes() + self.entry.bytes() + self.control.bytes()
     }
+}
+
+/// Clusters that a warp takes of `n` particles.
+fn per_warp(n: usize) -> usize {
+    (n.div_ceil(CLUSTER) / ENOUGH_WARPS).clamp(1, MOST_PER_WARP)
 }

@@ -14,11 +14,7 @@ use crate::{
 };
 use list::ClusterList;
 use nearfield_core::{Plan, Report, Result};
-use nearfield_kernels::{
-    Float4,
-    kernels::{self, StepKernels},
-    layouts::Results,
-};
+use nearfield_kernels::{Float4, layouts::Results};
 use std::sync::Arc;
 
 /// Cells, and lists where they pay.
@@ -127,11 +123,6 @@ impl Clusters {
         };
         // SAFETY: the arrays of particles and results have n elements each.
         unsafe { grid::forces(&*self.gpu, self.candidates(), &query) }
-    }
-
-    /// The kernels that step by the list.
-    pub(crate) fn step_kernels(&self) -> StepKernels {
-        if self.variant == Variant::SparseList { kernels::STEP_SPARSE } else { kernels::STEP }
     }
 
     /// The list, for steps by it.

@@ -55,13 +55,12 @@ impl Loaded {
         loop {
             let Self { physics, state, structure, next_position, totalizer, report, .. } = self;
             let clusters = structure.clusters_mut().expect("only clusters step by lists");
-            let kernels = clusters.step_kernels();
             let Some((list, grid)) = clusters.list_and_grid() else {
                 self.query(Quantities::FORCES)?;
                 return Ok(step);
             };
             let (integrator, status) = (integrator.layout(), totalizer.status().ptr());
-            let query = StepQuery { physics, state, spare: next_position, integrator, status, kernels };
+            let query = StepQuery { physics, state, spare: next_position, integrator, status };
             let made = list.steps(query, grid, step, before - step)?;
             if made > 0 {
                 self.account(made)?;

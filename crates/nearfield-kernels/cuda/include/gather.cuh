@@ -62,36 +62,39 @@ template <class L, bool EXACT, bool ENERGY, Meetings MEETINGS> struct Gather : C
 
     // One candidate in each lane. Chunks that need no care are most of them.
     __device__ void meet(const Candidate& c) {
-        const u32 slot = c.slot, image = c.image;
-        const bool valid = c.valid;
-        const float4 xj = c.x;
         if (MEETINGS == NO_IMAGE) {
-            pairs<NEAREST, true>(slot, xj, valid, image);
-        } else if (Traits<L>::COSTLY) {
-            pairs<SHIFTED, true>(slot, xj, valid, image);
-        } else if (is_partial() || __any_sync(ALL_LANES, valid && slot - first < CLUSTER)) {
-            pairs<SHIFTED, true>(slot, xj, valid, image);
-        } else if (__any_sync(ALL_LANES, valid && image != HOME_IMAGE)) {
-            pairs<SHIFTED, false>(slot, xj, valid, image);
+            pairs<NEAREST, true>(c.slot, c.x, c.valid);
+            return;
+        }
+        const bool home = c.image == HOME_IMAGE;
+        Shift shift = {0.0f, 0.0f, 0.0f};
+        if (!home) shift = shift_of(a.space, c.image);
+        if (Traits<L>::COSTLY || is_partial() || __any_sync(ALL_LANES, c.valid && c.slot - first < CLUSTER)) {
+            pairs<SHIFTED, true>(c.slot, c.x, c.valid, shift, home);
+        } else if (__any_sync(ALL_LANES, c.valid && !home)) {
+            pairs<SHIFTED, false>(c.slot, c.x, c.valid, shift, home);
         } else {
-            pairs<HOME, false>(slot, xj, valid, image);
+            pairs<HOME, false>(c.slot, c.x, c.valid);
         }
     }
 
     // Candidates of a list whose images are not known, but the same for all particles of the cluster.
     __device__ void care(u32 slot, const float4& xj, bool valid) {
-        u32 image = HOME_IMAGE;
-        if (!Traits<L>::COSTLY) separation<NEAREST>(a.space, x[0], xj, {0.0f, 0.0f, 0.0f}, image);
-        pairs<Traits<L>::COSTLY ? NEAREST : SHIFTED, true>(slot, xj, valid, image);
+        if (Traits<L>::COSTLY) {
+            pairs<NEAREST, true>(slot, xj, valid);
+        } else {
+            const Shift d = {xj.x - x[0].x, xj.y - x[0].y, xj.z - x[0].z};
+            const Shift shift = {to_nearest(a.space, 0, d.x), to_nearest(a.space, 1, d.y), to_nearest(a.space, 2, d.z)};
+            pairs<SHIFTED, true>(slot, xj, valid, shift);
+        }
     }
 
-    // CARE: some particles may not be active, and candidates may be the particles themselves.
+    // CARE: some particles may not be active, and candidates at `home` may be the particles themselves.
     template <Images IMAGES, bool CARE>
-    __device__ void pairs(u32 slot, const float4& xj, bool valid, u32 image) {
+    __device__ void pairs(u32 slot, const float4& xj, bool valid, const Shift& shift = {0.0f, 0.0f, 0.0f},
+                          bool home = true) {
         const u32 kind_j = kind_of(slot);
-        Shift shift = {0.0f, 0.0f, 0.0f};
-        if (IMAGES == SHIFTED && image != HOME_IMAGE) shift = shift_of(a.space, image);
-        const u32 own = IMAGES == SHIFTED && image != HOME_IMAGE ? (u32)CLUSTER : slot - first;
+        const u32 own = home ? slot - first : (u32)CLUSTER;
         const u32 allowed = own < CLUSTER ? active & ~(1u << own) : active;
         // Pairs within a cluster are met from both sides, at whichever image.
         const bool both = ALL_ONCE ? !CARE || slot - first >= count : !Traits<L>::ONE_RANGE && once;
@@ -100,7 +103,7 @@ template <class L, bool EXACT, bool ENERGY, Meetings MEETINGS> struct Gather : C
 #pragma unroll(Traits<L>::COSTLY ? 1 : CLUSTER)
         for (u32 k = 0; k < CLUSTER; ++k) {
             if (CARE && !LISTED && !(active >> k & 1)) continue;
-            const Shift d = separation<IMAGES>(a.space, x[k], xj, shift, image);
+            const Shift d = separation<IMAGES>(a.space, x[k], xj, shift);
             const float r2 = squared_length(d.x, d.y, d.z);
             const float range = Traits<L>::ONE_RANGE ? a.law.cutoff : fmaxf(radius_of(x[k]), radius_of(xj));
             bool in = valid && r2 < range * range;
@@ -150,10 +153,11 @@ template <class L, bool EXACT, bool ENERGY, Meetings MEETINGS> struct Gather : C
 // Forces on the particles of a warp from candidates in cells.
 template <class L, bool EXACT, bool ENERGY, Meetings MEETINGS> __device__ inline void forces_by_cells(const GatherArgs& a) {
     __shared__ Scratch scratch[WARPS_PER_BLOCK];
-    const ClusterPlace cluster = find_cluster(a.grid, a.n, thread_index() / WARP);
+    const bool WITHIN = !Traits<L>::ONE_RANGE;
+    const ClusterPlace cluster = own_cluster<WITHIN>(a.grid, a.n);
     if (cluster.count == 0) return;
     Gather<L, EXACT, ENERGY, MEETINGS> gather(a, cluster);
-    search_cells<!Traits<L>::ONE_RANGE>(a.grid, a.space, a.slack, cluster, cluster_bounds(gather.x),
+    search_cells<WITHIN>(a.grid, a.space, a.slack, cluster, cluster_bounds(gather.x),
                                         scratch[threadIdx.x / WARP], gather);
     gather.store();
 }

@@ -507,8 +507,12 @@ struct ListedArgs {
     ClusterControl *control;
     // The step that the forces belong to; zero where it is known that the list serves.
     u64 step;
+    // Clusters that a warp of `pairs_*` takes, one after another.
+    u32 clusters_per_warp;
+    // Zero.
+    u32 unused;
 };
-static_assert(sizeof(ListedArgs) == 768, "ListedArgs differs between host and device");
+static_assert(sizeof(ListedArgs) == 776, "ListedArgs differs between host and device");
 
 // Arguments of `step_*` and `move_listed`: a step of all particles by forces that are computed or read.
 struct ClusterStepArgs {
@@ -529,7 +533,7 @@ struct ClusterStepArgs {
     // Zero.
     u32 unused;
 };
-static_assert(sizeof(ClusterStepArgs) == 928, "ClusterStepArgs differs between host and device");
+static_assert(sizeof(ClusterStepArgs) == 936, "ClusterStepArgs differs between host and device");
 
 // Arguments of `clusters_moved`: whether a list serves the present positions.
 struct ClustersMovedArgs {

@@ -60,11 +60,11 @@ __device__ inline void meet_listed(const ListedArgs& a, u32 cluster, u32 (&entri
                 next_x = v.slots[next & LISTED_SLOT];
             }
             if (by_pair) {
-                v.template pairs<NEAREST, true>(slot, x, valid, HOME_IMAGE);
+                v.template pairs<NEAREST, true>(slot, x, valid);
             } else if (__any_sync(ALL_LANES, now & LISTED_CARE)) {
                 v.care(slot, x, valid);
             } else {
-                v.template pairs<HOME, false>(slot, x, valid, HOME_IMAGE);
+                v.template pairs<HOME, false>(slot, x, valid);
             }
         }
     }
@@ -73,7 +73,6 @@ __device__ inline void meet_listed(const ListedArgs& a, u32 cluster, u32 (&entri
 // Whether a particle is further than a limit from where it was when a list was made. Whole periods do not count: lists
 // hold for any of them.
 __device__ inline bool has_moved(const Box3& space, const float4& from, const float4& to, float limit2) {
-    u32 image;
-    const Shift d = separation<NEAREST>(space, from, to, {0.0f, 0.0f, 0.0f}, image);
+    const Shift d = separation<NEAREST>(space, from, to, {0.0f, 0.0f, 0.0f});
     return !(squared_length(d.x, d.y, d.z) <= limit2);
 }

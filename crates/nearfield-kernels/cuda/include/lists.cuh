@@ -7,8 +7,6 @@
 // What counting and filling share. A pair of one class is met from both sides and each side writes its own row; a pair
 // of two classes is met once, from the smaller, which writes both.
 template <class D, bool BRUTE, bool VARIABLE> struct Lister : Cluster {
-    static const bool AHEAD = true;
-
     const ListArgs& a;
     u32 id; // lane k: input index of particle k
 
@@ -45,10 +43,12 @@ template <class D, bool BRUTE, bool VARIABLE> struct Lister : Cluster {
         const u32 allowed = own < CLUSTER ? active & ~(1u << own) : active;
 #pragma unroll
         for (u32 k = 0; k < CLUSTER; ++k) {
-            const Shift d = separation<IMAGES>(a.space, x[k], c.x, shift, image);
+            const Shift d = separation<IMAGES>(a.space, x[k], c.x, shift);
+            if (IMAGES == NEAREST) image = nearest_image(a.space, x[k], c.x);
             const float range = VARIABLE ? fmaxf(x[k].w, c.x.w) : cutoff;
-            bool in = c.valid && squared_length(d.x, d.y, d.z) < range * range;
-            if (CARE) in = in && (allowed >> k & 1);
+            // Without short circuits, which would be branches.
+            bool in = c.valid & (squared_length(d.x, d.y, d.z) < range * range);
+            if (CARE) in = in & ((allowed >> k & 1) != 0);
             bool here = in;
             if (half || (VARIABLE && once)) {
                 const u32 id_i = __shfl_sync(ALL_LANES, id, k);
@@ -75,7 +75,7 @@ struct ListCount : Lister<ListCount<BRUTE, VARIABLE>, BRUTE, VARIABLE> {
     }
 
     __device__ void mine(u32 k, bool in, u32, u32) {
-        count[k] += in ? 1 : 0;
+        if (in) ++count[k];
     }
 
     __device__ void theirs(u32 id_j, u32, u32) {

@@ -77,6 +77,10 @@ layouts! {
         pub control: Ptr<ClusterControl>,
         /// The step that the forces belong to; zero where it is known that the list serves.
         pub step: u64,
+        /// Clusters that a warp of `pairs_*` takes, one after another.
+        pub clusters_per_warp: u32,
+        /// Zero.
+        pub unused: u32,
     }
 
     /// Arguments of `step_*` and `move_listed`: a step of all particles by forces that are computed or read.
