@@ -3,9 +3,10 @@
 use crate::{
     ByForce, Kernel, Primitive, RayProgram,
     layouts::{
-        AdvanceRays, BodiesArgs, BoundsArgs, BoxesArgs, ClusterListArgs, ClusterStepArgs, ClustersMovedArgs,
-        FinishExactArgs, ForceRays, GatherArgs, IntegrateArgs, ListArgs, ListRays, ListedArgs, MortonArgs, MotionArgs,
-        NumberArgs, PermuteArgs, RescaleArgs, RowsArgs, SampleArgs, ScanArgs, SortArgs, TotalsArgs,
+        AdvanceRays, BodiesArgs, BoundsArgs, BoxesArgs, CellStepArgs, ClusterListArgs, ClusterStepArgs,
+        ClustersMovedArgs, FinishExactArgs, ForceRays, GatherArgs, IntegrateArgs, ListArgs, ListRays, ListedArgs,
+        MortonArgs, MotionArgs, NumberArgs, PermuteArgs, RescaleArgs, RowsArgs, SampleArgs, ScanArgs, SortArgs,
+        TotalsArgs,
     },
 };
 
@@ -60,6 +61,11 @@ pub const CELL_FORCES: ByForce<Kernel<GatherArgs>> = ByForce {
     exact: Kernel::new("cell_forces", "cell_exact", 128),
     exact_energy: Kernel::new("cell_forces", "cell_exact_energy", 128),
 };
+
+/// Forces and a step, by cells where most particles have no neighbours and one cutoff serves all pairs; a thread for each
+/// particle. In f32 and without energies.
+pub const CELL_STEP: ByForce<Kernel<CellStepArgs>> =
+    steps(Kernel::new("cell_step", "cell_step_uniform", 128), Kernel::new("cell_step", "cell_step_any", 128));
 
 /// Forces from candidates in cells, each pair found once and added to zeros, but for sums that do not depend on order.
 pub const CLUSTER_FORCES: ByForce<Kernel<GatherArgs>> = ByForce {

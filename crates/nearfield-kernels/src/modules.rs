@@ -37,6 +37,7 @@ pub const MODULES: &[Module] = modules![
     "cells",
     "brute",
     "cell_forces",
+    "cell_step",
     "cluster_forces" and "cluster_forces.sm_90",
     "cluster_list",
     "cluster_step",

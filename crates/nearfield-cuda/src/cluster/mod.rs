@@ -126,8 +126,13 @@ impl Clusters {
     }
 
     /// The list, for steps by it.
-    pub(crate) fn list_and_grid(&mut self) -> Option<(&mut ClusterList, &Grid)> {
-        self.variant.uses_list().then_some((&mut self.list, &self.grid))
+    pub(crate) fn list_and_grid(&mut self) -> (&mut ClusterList, &Grid) {
+        (&mut self.list, &self.grid)
+    }
+
+    /// The cells, where there is no list.
+    pub(crate) fn cells(&self) -> Option<&Grid> {
+        (!self.variant.uses_list()).then_some(&self.grid)
     }
 
     fn pairs(&self) -> Pairs {

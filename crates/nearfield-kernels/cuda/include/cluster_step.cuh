@@ -21,24 +21,10 @@ __device__ inline void move_particle(const ClusterStepArgs& a, u32 i, Moving p, 
     Particles to = a.particles;
     to.position = a.next;
     // Read before anything is written, so that it need not be waited for then.
-    const float4 reference = a.reference[i], start = p.position;
-    // A particle that has failed is left where it was, so that coordinates stay finite until the run is stopped.
-    if (!all_finite(force)) {
-        atomicMin(&a.status->force, failure(a.listed.step, a.particles.id[i]));
-        to.position[i] = start;
-        return;
-    }
-    // Random numbers take input indices; nothing else does.
-    const u32 id = a.integrator.langevin ? a.particles.id[i] : 0;
-    finish_step(a.integrator, p, force);
-    start_step(a.integrator, p, force, id, a.listed.step + 1);
-    if (!all_finite(p.position)) {
-        atomicMin(&a.status->position, failure(a.listed.step + 1, a.particles.id[i]));
-        to.position[i] = start;
-        return;
-    }
+    const float4 reference = a.reference[i];
+    const bool moves = advance(a.integrator, a.status, a.particles.id, i, a.listed.step, p, force);
     store_moving(to, i, p);
-    if (has_moved(a.integrator.space, reference, p.position, a.limit2)) {
+    if (moves && has_moved(a.integrator.space, reference, p.position, a.limit2)) {
         atomicMin(&a.listed.control->rebuild_at, a.listed.step + 1);
     }
 }

@@ -132,3 +132,24 @@ __device__ inline void finish_step(const Integrator& how, Moving& p, const float
     kick(how, p, force);
     limit(how, p);
 }
+
+// The rest of `step` of particle `i`, `p`, and the beginning of the next. A particle that has failed is noted and left
+// where it was, so that coordinates stay finite until the run is stopped.
+__device__ inline bool advance(const Integrator& how, Status* status, const u32* ids, u32 i, u64 step, Moving& p,
+                               const float4& force) {
+    if (!all_finite(force)) {
+        atomicMin(&status->force, failure(step, ids[i]));
+        return false;
+    }
+    const Moving before = p;
+    // Random numbers take input indices; nothing else does.
+    const u32 id = how.langevin ? ids[i] : 0;
+    finish_step(how, p, force);
+    start_step(how, p, force, id, step + 1);
+    if (!all_finite(p.position)) {
+        atomicMin(&status->position, failure(step + 1, ids[i]));
+        p = before;
+        return false;
+    }
+    return true;
+}

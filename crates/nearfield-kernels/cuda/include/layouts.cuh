@@ -391,6 +391,21 @@ struct GatherArgs {
 };
 static_assert(sizeof(GatherArgs) == 736, "GatherArgs differs between host and device");
 
+// Arguments of `cell_step_*`: forces, and with them a step of all particles.
+struct CellStepArgs {
+    // Where forces come from; results are not stored.
+    GatherArgs gather;
+    // How particles move.
+    Integrator integrator;
+    // The particles, at the positions that were sorted.
+    Particles particles;
+    // What went wrong.
+    Status *status;
+    // The step that the forces belong to.
+    u64 step;
+};
+static_assert(sizeof(CellStepArgs) == 880, "CellStepArgs differs between host and device");
+
 // Arguments of `number_slots`.
 struct NumberArgs {
     // Place of each slot's particle.

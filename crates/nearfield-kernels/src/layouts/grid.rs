@@ -1,6 +1,9 @@
 //! Cells and the kernels that scan them.
 
-use super::physics::{Box3, Law, Results};
+use super::{
+    particles::{Integrator, Particles, Status},
+    physics::{Box3, Law, Results},
+};
 use crate::layout::{Float4, Ptr, layouts};
 
 layouts! {
@@ -89,6 +92,20 @@ layouts! {
         pub n: u32,
         /// Added to ranges so that roundings lose no candidate.
         pub slack: f32,
+    }
+
+    /// Arguments of `cell_step_*`: forces, and with them a step of all particles.
+    pub struct CellStepArgs {
+        /// Where forces come from; results are not stored.
+        pub gather: GatherArgs,
+        /// How particles move.
+        pub integrator: Integrator,
+        /// The particles, at the positions that were sorted.
+        pub particles: Particles,
+        /// What went wrong.
+        pub status: Ptr<Status>,
+        /// The step that the forces belong to.
+        pub step: u64,
     }
 
     /// Arguments of `number_slots`.
