@@ -1,5 +1,5 @@
-// Steps of particles most of which have no neighbours, by cells that hold about one: a thread looks around a particle and
-// moves it. Others are looked at where they were sorted to, so particles move in place.
+// Steps of particles most of which have no neighbours, by cells that hold about one: a thread looks around a particle
+// and moves it. Others are looked at where they were sorted to, so particles move in place.
 
 #include "integrate.cuh"
 #include "law.cuh"
@@ -7,7 +7,8 @@
 #include "sums.cuh"
 
 // Force on the particle in a slot, of kind `kind`.
-template <class L> __device__ inline Sums<false, false> force_in(const GatherArgs& g, u32 slot, const float4& x, u32 kind) {
+template <class L>
+__device__ inline Sums<false, false> force_in(const GatherArgs& g, u32 slot, const float4& x, u32 kind) {
     const CellClass& cells = g.grid.classes[0];
     const bool typed = L::TYPED && g.law.n_types > 1;
     const float cutoff = g.law.cutoff, reach = cutoff + g.slack;

@@ -11,11 +11,11 @@ struct Listing : Cluster {
     const ClusterListArgs& a;
     u32* stage;
     u32 count, staged;
-    u32 segment; // that is filled next
-    bool apart;     // particles are searched for one by one, or some candidate may be near two of them at two images
-    bool by_pair;   // see `Segment`
-    bool far;       // neither the cluster nor candidates may cross a face
-    float reach2;   // square of the range, skin and slack included
+    u32 segment;  // that is filled next
+    bool apart;   // particles are searched for one by one, or some candidate may be near two of them at two images
+    bool by_pair; // see `Segment`
+    bool far;     // neither the cluster nor candidates may cross a face
+    float reach2; // square of the range, skin and slack included
 
     __device__ Listing(const ClusterListArgs& arguments, const ClusterPlace& place, u32 number, u32* entries)
         : a(arguments), stage(entries), count(place.count), staged(0), segment(number) {
@@ -45,7 +45,7 @@ struct Listing : Cluster {
         const float4 own = slots[first + smaller(lane, count - 1)];
         bool near = false;
 #pragma unroll
-        for (u32 k = 0; k < CLUSTER; ++k) near = near || (k != lane && k < count && distance2(own, k) < reach2);
+        for (u32 k = 0; k < CLUSTER; ++k) near = near | ((k != lane) & (k < count) & (distance2(own, k) < reach2));
         append(first + lane, near && lane < count, true);
     }
 
@@ -54,22 +54,21 @@ struct Listing : Cluster {
     }
 
     __device__ void meet(const Candidate& c) {
-        const u32 slot = c.slot, image = c.image;
-        const bool valid = c.valid;
-        float4 xj = c.x;
         if (apart) {
-            append(slot, valid && is_listed(slot, xj, image), true);
+            append(c.slot, c.valid && is_listed(c.slot, c.x, c.image), true);
             return;
         }
-        const bool care = image != HOME_IMAGE || (!far && is_near_face(xj));
-        if (image != HOME_IMAGE) {
-            const Shift shift = shift_of(a.space, image);
+        const bool care = c.image != HOME_IMAGE || (!far && is_near_face(c.x));
+        // The margins cover that this is not rounded as pairs are.
+        float4 xj = c.x;
+        if (c.image != HOME_IMAGE) {
+            const Shift shift = shift_of(a.space, c.image);
             xj = make_float4(xj.x + shift.x, xj.y + shift.y, xj.z + shift.z, xj.w);
         }
         float least = infinity();
 #pragma unroll
         for (u32 k = 0; k < CLUSTER; ++k) least = fminf(least, distance2(xj, k));
-        append(slot, valid && least < reach2 && slot - first >= count, care);
+        append(c.slot, c.valid && least < reach2 && c.slot - first >= count, care);
     }
 
     __device__ bool is_near_face(const float4& p) const {

@@ -23,8 +23,8 @@ const CHUNK: u64 = 32;
 
 const BYTES_PER_CHUNK: u64 = CHUNK * size_of::<u32>() as u64;
 
-/// Chunks of a cluster for which there is room at first.
-const FIRST_CHUNKS: u64 = 8;
+/// Chunks of a cluster for which there is room at first, of lists that hold each pair once and of those of both sides.
+const FIRST_CHUNKS: [u64; 2] = [5, 8];
 
 /// Steps that a list is first thought to serve for.
 const FIRST_LIFE: u64 = 8;
@@ -134,7 +134,8 @@ impl ClusterList {
     }
 
     /// Enqueues the listing of what is near each cluster of particles in the order of `grid`, which was built for range
-    /// and skin; each pair `once` or from both sides. Whether there was room for it is seen later: by [`ClusterList::settle`], or at the end of steps.
+    /// and skin; each pair `once` or from both sides. Whether there was room for it is seen later: by
+    /// [`ClusterList::settle`], or at the end of steps.
     pub fn build(
         &mut self,
         physics: &Physics,
@@ -145,7 +146,7 @@ impl ClusterList {
         report: &mut Report,
     ) -> Result<()> {
         self.once = once;
-        let first = state.len().div_ceil(CLUSTER) as u64 * FIRST_CHUNKS;
+        let first = state.len().div_ceil(CLUSTER) as u64 * FIRST_CHUNKS[usize::from(!once)];
         self.enqueue(physics, state, grid, self.room().max(first).min(budget / BYTES_PER_CHUNK))?;
         report.list_builds += 1;
         if self.age == 1 && self.skin > 0.0 && report.list_builds > 1 {

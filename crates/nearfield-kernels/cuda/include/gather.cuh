@@ -24,9 +24,9 @@ template <> struct Traits<AnyLaw> {
 
 // Which candidates a cluster meets, and at which image.
 enum Meetings {
-    DIRECTED, // all in its own class, and those of larger classes
-    ONCE,     // those from its own first slot on, so that each pair is met once but within a cluster
-    NO_IMAGE, // all, without knowing their images
+    DIRECTED,    // all in its own class, and those of larger classes
+    ONCE,        // those from its own first slot on, so that each pair is met once but within a cluster
+    NO_IMAGE,    // all, without knowing their images
     LISTED_ONCE, // as ONCE, without knowing their images
 };
 
@@ -151,7 +151,8 @@ template <class L, bool EXACT, bool ENERGY, Meetings MEETINGS> struct Gather : C
 };
 
 // Forces on the particles of a warp from candidates in cells.
-template <class L, bool EXACT, bool ENERGY, Meetings MEETINGS> __device__ inline void forces_by_cells(const GatherArgs& a) {
+template <class L, bool EXACT, bool ENERGY, Meetings MEETINGS>
+__device__ inline void forces_by_cells(const GatherArgs& a) {
     __shared__ Scratch scratch[WARPS_PER_BLOCK];
     const bool WITHIN = !Traits<L>::ONE_RANGE;
     const ClusterPlace cluster = own_cluster<WITHIN>(a.grid, a.n);

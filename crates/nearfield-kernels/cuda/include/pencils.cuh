@@ -200,7 +200,8 @@ struct Candidate {
 };
 
 // Candidate `t` of `total`, the last instead of those after, whose row is found from that of an earlier one on.
-template <class V> __device__ inline Candidate candidate(const Scratch& scratch, u32 t, u32 total, u32& row, const V& v) {
+template <class V>
+__device__ inline Candidate candidate(const Scratch& scratch, u32 t, u32 total, u32& row, const V& v) {
     const u32 at = smaller(t, total - 1);
     while (scratch.end[row] <= at) ++row;
     const u32 slot = at + scratch.offset[row];
