@@ -66,6 +66,30 @@ pub enum Error {
         /// Why not.
         reason: String,
     },
+    /// A line of a file of results is no record of this version.
+    #[error("{}:{line}: no benchmark record of this version: {reason}; remove the line or the file", path.display())]
+    Results {
+        /// The file.
+        path: PathBuf,
+        /// Line number, from 1.
+        line: usize,
+        /// What is wrong.
+        reason: String,
+    },
+    /// There is nothing to plot.
+    #[error("{}: no results (*.jsonl) of nearfield bench here or in the folders below", directory.display())]
+    NoResults {
+        /// The directory.
+        directory: PathBuf,
+    },
+    /// A figure could not be drawn.
+    #[error("cannot draw {figure}: {reason}")]
+    Figure {
+        /// The figure.
+        figure: String,
+        /// What went wrong.
+        reason: String,
+    },
     /// The run was asked to stop.
     #[error("interrupted at step {step}; continue with --resume")]
     Interrupted {

@@ -17,7 +17,7 @@ pub use fixed::Fixed;
 pub use gradient::{Gradient, optimal_updates, optimal_updates_exact};
 
 use crate::engine::StepCost;
-use serde::{Serialize, Serializer};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 use std::{fmt, str::FromStr};
 
 /// What to do with the structure at the next evaluation.
@@ -119,5 +119,11 @@ impl FromStr for Maintenance {
 impl Serialize for Maintenance {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)
+    }
+}
+
+impl<'de> Deserialize<'de> for Maintenance {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        String::deserialize(deserializer)?.parse().map_err(de::Error::custom)
     }
 }

@@ -1,0 +1,37 @@
+//! The cost of each step: paper A, figure 8.
+
+use super::Trial;
+use crate::{
+    Result,
+    bench::{Measurement, Series, Spread},
+};
+use nearfield_core::Quantities;
+
+/// How often interactions are counted in a run.
+const COUNTS: u64 = 40;
+
+impl Trial<'_> {
+    /// Runs once, with the cost of each step recorded.
+    pub(super) fn series(&mut self, steps: u64, measurement: &mut Measurement) -> Result<()> {
+        let n = self.system.particles.len() as f64;
+        // Evaluations before the first step are no part of the run.
+        let before = self.engine.report().history.len();
+        let mut series = Series { interactions: vec![(0, measurement.pairs as f64 / n)], ..Series::default() };
+        let mut total = 0.0;
+        while self.step < steps {
+            let chunk = (steps / COUNTS).clamp(1, steps - self.step);
+            let (seconds, pairs) = self.advance(chunk, Quantities::ALL)?;
+            total += seconds;
+            series.interactions.push((self.step, pairs as f64 / n));
+        }
+        let history = &self.engine.report().history[before..];
+        let micro = |seconds: f64| (seconds * 1e7).round() / 10.0;
+        series.structure = history.iter().map(|cost| micro(cost.structure)).collect();
+        series.query = history.iter().map(|cost| micro(cost.query)).collect();
+        series.builds = (0..history.len()).filter(|&k| history[k].built).collect();
+        measurement.time = Spread::of(vec![total / steps as f64]);
+        measurement.steps = steps;
+        measurement.series = Some(series);
+        Ok(())
+    }
+}
