@@ -22,7 +22,7 @@ mod structure;
 mod testing;
 
 pub use brute::Brute;
-pub use bvh::{Bvh, Ray, Refit};
+pub use bvh::{Bvh, Probe, Ray, Refit};
 pub use engine::CpuEngine;
 pub use grid::Grid;
 pub use list::{ListBuilder, Row, Rows, neighbor_list};

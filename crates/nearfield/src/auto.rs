@@ -42,6 +42,7 @@ pub fn choose(engine: &mut dyn Engine, system: &System, plan: &Plan) -> Result<C
     let mut measured: Vec<(Method, f64)> = Vec::new();
     let mut too_large = None;
     let begin = Instant::now();
+    // Not the rays of paper B, which find what those of rt-boxes find in more steps.
     for &method in
         [Method::Cell, Method::RtBoxes, Method::RtPerse, Method::RtForces, Method::RtList, Method::Brute].iter()
     {

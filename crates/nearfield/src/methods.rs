@@ -38,7 +38,10 @@ fn support(method: Method, device: &'static str) -> MethodSupport {
         Method::RtList => ("boxes, point ray, list", "RT-REF (A)"),
         Method::RtForces => ("boxes, point ray, scatter", "ORCS-forces (A)"),
         Method::RtPerse => ("boxes, point ray, advance", "ORCS-perse (A)"),
+        Method::Cluster => ("cluster grid, cluster pairs, list", "ours"),
         Method::RtBoxes => ("boxes, point ray, gather", "custom AABB (B)"),
+        Method::RtSpheres => ("spheres, axis rays, gather", "spheres (B)"),
+        Method::RtSquares => ("squares, edge rays, gather", "double squares (B)"),
     };
     MethodSupport {
         method,

@@ -19,8 +19,8 @@ Examples:
   ffmpeg -framerate 25 -i film/frame_%04d.png -pix_fmt yuv420p film.mp4
 
 Particles are shaded spheres that touch their usual nearest neighbour. With --focus N the camera looks at particle N \
-(counted from 0): it is orange, its neighbours are blue, through periodic faces too (there where they are within range, \
-and paler where they are in the box), all others are grey, and those that would hide it are left out.
+(counted from 0): it is orange, its neighbours are blue, through periodic faces too (there where they are within \
+range, and paler where they are in the box), all others are grey, and those that would hide it are left out.
 
 With --as the picture shows what the ray-tracing methods work with, for the cutoff C: spheres of radius C*sqrt(2/3) \
 (rt-spheres), squares of width C (rt-squares), boxes of half width C (rt-boxes); with --focus those of the neighbours, \
@@ -28,8 +28,8 @@ and the rays of the particle that find them. Drawing takes the CPU only.";
 
 #[derive(Args)]
 pub struct RenderArguments {
-    /// Particles: .xyz, .extxyz, .data, .lmp, .gro, - for extended XYZ on standard input, or a configuration file (.toml)
-    /// for its start.
+    /// Particles: .xyz, .extxyz, .data, .lmp, .gro, - for extended XYZ on standard input, or a configuration file
+    /// (.toml) for its start.
     pub input: PathBuf,
     /// Picture to write: .png. With --frames, frame.png stands for frame_0001.png and so on.
     #[arg(short, long, value_name = "PICTURE.png")]

@@ -82,7 +82,7 @@ fn series(arguments: &RenderArguments, options: Options, range: FrameRange) -> R
         let Some(frame) = next()? else { break };
         let index = n_frames;
         n_frames += 1;
-        if index < range.first || (index - range.first) % range.step != 0 {
+        if index < range.first || !(index - range.first).is_multiple_of(range.step) {
             continue;
         }
         let named = |failure: Failure| failure.within(format!("frame {index}"));

@@ -101,6 +101,16 @@ impl Node {
         mask
     }
 
+    /// Bit `l` is set when child `l` overlaps any of `queries`.
+    #[inline(always)]
+    pub fn overlap_any<const N: usize>(&self, queries: &[Aabb; N]) -> u32 {
+        let mut mask = 0;
+        for query in queries {
+            mask |= self.overlap(query);
+        }
+        mask
+    }
+
     /// The distances at which a ray from `origin` enters the children, and a bit for each child that it meets within
     /// `reach`. `inverse` is one over its direction, finite on every axis.
     #[inline(always)]

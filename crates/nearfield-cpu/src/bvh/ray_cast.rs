@@ -1,4 +1,5 @@
-//! Long rays through the tree, nearest boxes first: for pictures. Neighbours are found by point rays instead.
+//! Long rays through the tree, the nearer children of a node first: for pictures. Neighbours are found by point rays
+//! instead.
 
 use super::{Bvh, tree::Tree};
 use crate::{LANES, Slots};
@@ -15,9 +16,10 @@ pub struct Ray {
 }
 
 impl Bvh {
-    /// Calls `visit` with the slots of each leaf whose box `ray` meets within the distance `reach`, in order of the
-    /// distance to their boxes. The visitor gets the present reach and returns the new one: shorter once something
-    /// is hit, negative to stop. Periodic images are not followed.
+    /// Calls `visit` with the slots of each leaf whose box `ray` meets within the distance `reach`. Of the children
+    /// of a node the nearer ones come first; boxes overlap, so this is not an order of all leaves. The visitor gets the
+    /// present reach and returns the new one: shorter once something is hit, negative to stop. Periodic images are not
+    /// followed.
     ///
     /// ```
     /// use nearfield_core::{Boundary, Images, SimBox};
@@ -108,9 +110,10 @@ mod tests {
     }
 
     #[test]
-    fn a_ray_visits_every_sphere_that_it_meets_nearest_leaf_first() {
+    fn a_ray_visits_every_sphere_that_it_meets_and_the_nearest_leaf_of_a_node_first() {
         let mut random = rand_pcg::Pcg64::seed_from_u64(7);
         let sim_box = SimBox::cubic(10.0, Boundary::Open).unwrap();
+        let mut n_compared = 0;
         for n in [1, 16, 300, 5000] {
             let position: [Vec<f32>; 3] =
                 std::array::from_fn(|_| (0..n).map(|_| random.random_range(0.0..10.0)).collect());
@@ -156,13 +159,14 @@ mod tests {
                         if distance.is_finite() { entry.max(distance) } else { entry }
                     })
                 };
-                let entries: Vec<f32> = boxes.iter().map(entry).collect();
-                assert!(
-                    entries.windows(2).all(|pair| pair[0] <= pair[1] + 1e-4),
-                    "{n} particles, {ray:?}: {entries:?}"
-                );
+                for pair in boxes.windows(2).filter(|pair| pair[0] / LANES == pair[1] / LANES) {
+                    let [first, second] = [entry(&pair[0]), entry(&pair[1])];
+                    assert!(first <= second + 1e-4, "{n} particles, {ray:?}: {first} before {second}");
+                    n_compared += 1;
+                }
             }
         }
+        assert!(n_compared > 100, "{n_compared} pairs of leaves test little");
     }
 
     #[test]

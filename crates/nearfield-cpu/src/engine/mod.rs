@@ -61,6 +61,9 @@ impl Engine for CpuEngine {
     }
 
     fn supports(&self, system: &System, plan: &Plan) -> Result<()> {
+        if plan.method == nearfield_core::Method::Cluster {
+            return Err(Error::Unsupported { method: plan.method, reason: "the CPU has no clusters yet; use cell" });
+        }
         if !system.radii.is_uniform() && !plan.method.supports_variable_radii() {
             return Err(Error::Unsupported {
                 method: plan.method,

@@ -38,6 +38,9 @@ struct Arguments {
     /// Only cases whose name contains this.
     #[arg(long, default_value = "")]
     filter: String,
+    /// Skin of the methods that keep lists; the plan's default where it is not given.
+    #[arg(long)]
+    skin: Option<f32>,
     /// Seconds to spend on each measurement.
     #[arg(long, default_value_t = 0.4)]
     seconds: f64,
@@ -96,6 +99,11 @@ fn asked(arguments: &Arguments, default: &[Method]) -> Vec<Method> {
     Method::ALL.iter().copied().filter(|method| wanted.contains(method)).collect()
 }
 
+fn plan(method: Method, arguments: &Arguments) -> Plan {
+    let plan = Plan::new(method);
+    Plan { skin: arguments.skin.unwrap_or(plan.skin), ..plan }
+}
+
 /// Paper A's table 2.
 fn methods(bench: &mut Bench, arguments: &Arguments) {
     for n in sizes(arguments, &[50_000, 1_000_000]) {
@@ -104,7 +112,7 @@ fn methods(bench: &mut Bench, arguments: &Arguments) {
                 for positions in cases::POSITIONS {
                     let case = cases::orcs(n, positions, radii, boundary);
                     for method in asked(arguments, &Method::ALL[1..]) {
-                        let plan = Plan { maintenance: Maintenance::Gradient, ..Plan::new(method) };
+                        let plan = Plan { maintenance: Maintenance::Gradient, ..plan(method, arguments) };
                         bench.steps("methods", &case, &plan);
                     }
                 }
@@ -131,7 +139,7 @@ fn melt(bench: &mut Bench, arguments: &Arguments) {
         let case = cases::melt(n);
         for method in asked(arguments, &Method::ALL[1..]) {
             for deterministic in [false, true] {
-                bench.steps("melt", &case, &Plan { deterministic, ..Plan::new(method) });
+                bench.steps("melt", &case, &Plan { deterministic, ..plan(method, arguments) });
             }
         }
     }
@@ -141,10 +149,10 @@ fn melt(bench: &mut Bench, arguments: &Arguments) {
 fn scaling(bench: &mut Bench, arguments: &Arguments) {
     for n in sizes(arguments, &[10_000, 100_000, 1_000_000, 10_000_000, 100_000_000]) {
         let case = cases::gas(n);
-        for method in asked(arguments, &[Method::Cell, Method::RtBoxes]) {
+        for method in asked(arguments, &[Method::Cell, Method::Cluster, Method::RtBoxes]) {
             let images: &[Images] = if method.uses_bvh() && n <= 1_000_000 { Images::ALL } else { &[Images::Gamma] };
             for &images in images {
-                if bench.steps("scaling", &case, &Plan { images, ..Plan::new(method) }) == Outcome::TooLong {
+                if bench.steps("scaling", &case, &Plan { images, ..plan(method, arguments) }) == Outcome::TooLong {
                     break;
                 }
             }

@@ -7,16 +7,16 @@ mod list;
 mod loaded;
 pub(crate) mod motion;
 mod order;
-mod physics;
+pub(crate) mod physics;
 mod results;
 mod run;
-mod state;
+pub(crate) mod state;
 mod structure;
-mod survey;
+pub(crate) mod survey;
 mod timeline;
 mod totals;
 
-use crate::{Buffer, CudaDevice, DeviceList, Gpu, Unavailable};
+use crate::{Buffer, CudaDevice, DeviceList, Gpu, Unavailable, Variant};
 use loaded::Loaded;
 use nearfield_core::{
     Dynamics, Engine, Error, ListRequest, NeighborList, Particles, PerParticle, Plan, Quantities, Report, Result,
@@ -60,6 +60,11 @@ impl CudaEngine {
     /// As [`Engine::neighbor_list`].
     pub fn count_on_device(&mut self) -> Result<&Buffer<u32>> {
         self.loaded()?.count_on_device()
+    }
+
+    /// What `cluster` has chosen for the loaded system, once forces have been computed by it.
+    pub fn cluster_variant(&self) -> Option<Variant> {
+        self.loaded.as_ref()?.structure.cluster_variant()
     }
 
     /// Waits for the device.

@@ -15,6 +15,9 @@ const CELLS_PER_WIDTH: f64 = 4.0;
 const CELLS_PER_PARTICLE: f64 = 4.0;
 const LEAST_CELLS: f64 = 64.0;
 
+/// Ratio of expected neighbours that a sample does not tell from none.
+const SIMILAR: f64 = 1.1;
+
 /// Most cells along an axis: kernels compute them in f32.
 const MOST_ALONG: f64 = (1 << 22) as f64;
 
@@ -42,6 +45,8 @@ pub struct CellPlan {
     pub n_cells: usize,
     /// What kernels must add to ranges so that roundings lose no candidate, \[length\].
     pub slack: f32,
+    /// Expected number of particles within the largest range of one of them.
+    pub neighbors: f64,
 }
 
 impl CellPlan {
@@ -52,13 +57,22 @@ impl CellPlan {
             Some(cutoff) => classes::single(survey.n, cutoff),
             None => classes::divide(survey.sample.iter().map(|p| p.w).collect(), survey.largest, &bulk),
         };
-        let mut plan = Self { slack: slack(&bulk, survey.sim_box), ..Self::default() };
+        let neighbors = survey.n as f64 * bulk.share_within(f64::from(survey.largest));
+        let mut plan = Self { slack: slack(&bulk, survey.sim_box), neighbors, ..Self::default() };
         for class in &classes {
             let cells = lay_out(class, &bulk, plan.n_cells);
             plan.n_cells += cells.n.iter().map(|&n| n as usize).product::<usize>();
             plan.classes.push(cells);
         }
         plan
+    }
+}
+
+impl CellPlan {
+    /// Whether particles have about as many neighbours in as many classes.
+    pub(super) fn is_much_as(&self, other: &Self) -> bool {
+        let ratio = self.neighbors / other.neighbors;
+        self.classes.len() == other.classes.len() && (1.0 / SIMILAR..SIMILAR).contains(&ratio)
     }
 }
 

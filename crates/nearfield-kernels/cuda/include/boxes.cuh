@@ -33,6 +33,12 @@ __device__ inline u32 faces_with_ghosts(const BoxesArgs& a, const float4& x) {
     return in_use | wrappable | (wrappable & 0x15u) << 1 | (wrappable & 0x2au) >> 1;
 }
 
+// Notes when particle k, if it is one, needs a ghost that it lacks.
+__device__ inline void note_missing_ghosts(const BoxesArgs& a, u32 k, const float4& x) {
+    if (!a.faces || k >= a.n) return;
+    if ((faces_within(a.space, x, half_width(a, x)) & ~(u32)a.faces[k]) != 0) *a.counter = 1;
+}
+
 // The faces by which a particle is seen in an image.
 __device__ inline u32 faces_of_image(u32 image) {
     const u32 x = image % 3, y = image / 3 % 3, z = image / 9;

@@ -95,6 +95,7 @@ struct RowSearch {
     const Box3& space;
     const Bounds& box;
     float range, slack;
+    u32 least; // slots before are left out
 
     // Of the image that is being searched.
     u32 image, first_y, first_z, n_y, next, count;
@@ -133,8 +134,8 @@ struct RowSearch {
         const u32 x0 = cell_coordinate(cells, 0, box.lo[0] - half - shift.x);
         const u32 x1 = cell_coordinate(cells, 0, box.hi[0] + half - shift.x);
         const u32 first = first_of_cells(cells, row_number(cells, y, z), x0, x1);
-        start = cell_start[first];
-        end = cell_start[first + (x1 - x0) + 1];
+        start = larger(cell_start[first], least);
+        end = larger(cell_start[first + (x1 - x0) + 1], start);
     }
 };
 
@@ -253,8 +254,8 @@ __device__ inline bool is_spread(const Bounds& box, const CellClass& cells, floa
 }
 
 // Candidates for the particles of a cluster: of its own class, and of those of larger radii, so that pairs of two
-// classes are met once, from the smaller. Tells `v` which of its particles are searched for and whether pairs are met
-// once.
+// classes are met once, from the smaller. Slots before `v.least` are left out. Tells `v` which of its particles are
+// searched for and whether pairs are met once.
 template <bool WITHIN, class V>
 __device__ inline void search_cells(const Grid& grid, const Box3& space, float slack, const ClusterPlace& cluster,
                                     const Bounds& box, Scratch& scratch, V& v) {
@@ -269,7 +270,7 @@ __device__ inline void search_cells(const Grid& grid, const Box3& space, float s
         for (u32 part = 0; part < (apart ? cluster.count : 1); ++part) {
             v.active = apart ? 1u << part : (1u << cluster.count) - 1;
             const Bounds part_box = apart ? point_bounds(grid.slot[cluster.first + part]) : box;
-            const RowSearch search = {cells, grid.cell_start, space, part_box, cells.largest, slack};
+            const RowSearch search = {cells, grid.cell_start, space, part_box, cells.largest, slack, v.least};
             search_class<WITHIN>(search, scratch, pending, finish, v);
         }
     }

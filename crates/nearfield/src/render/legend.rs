@@ -11,8 +11,8 @@ use super::{
 pub(super) enum Legend {
     /// None: one type, or not wanted.
     None,
-    /// A bar of colours.
-    Bar { title: String, map: ColorMap, range: [f64; 2] },
+    /// A bar of colours, for counts with whole numbers beside it.
+    Bar { title: String, map: ColorMap, range: [f64; 2], counts: bool },
     /// Names and their colours.
     Names(Vec<(String, Rgb)>),
 }
@@ -28,8 +28,8 @@ impl Legend {
         let widest = |texts: &mut dyn Iterator<Item = &str>| texts.map(|text| pen.width(text)).fold(0.0, f32::max);
         match self {
             Self::None => 0.0,
-            Self::Bar { title, range, .. } => {
-                let labels: Vec<String> = ticks(*range).into_iter().map(|(_, label)| label).collect();
+            Self::Bar { title, range, counts, .. } => {
+                let labels: Vec<String> = ticks(*range, *counts).into_iter().map(|(_, label)| label).collect();
                 let bar = letter * (1.0 + GAP) + widest(&mut labels.iter().map(String::as_str));
                 bar.max(widest(&mut lines(title).iter().map(String::as_str))) + 2.5 * GAP * letter
             }
@@ -44,7 +44,7 @@ impl Legend {
         let pen = Pen::new(letter, ink);
         match self {
             Self::None => {}
-            Self::Bar { title, map, range } => {
+            Self::Bar { title, map, range, counts } => {
                 let (top, bottom) = (0.3 * image.height as f32, 0.75 * image.height as f32);
                 let lines = lines(title);
                 for (row, line) in lines.iter().rev().enumerate() {
@@ -56,7 +56,7 @@ impl Legend {
                         image.blend(x.into(), y.into(), color, 1.0);
                     }
                 }
-                for (value, label) in ticks(*range) {
+                for (value, label) in ticks(*range, *counts) {
                     let y = bottom - (bottom - top) * ((value - range[0]) / (range[1] - range[0])) as f32;
                     pen.write(image, left + letter * (1.0 + GAP), y, &label);
                     for x in 0..(0.3 * letter) as u32 {
@@ -101,14 +101,15 @@ fn disc(image: &mut Image, center: [f32; 2], radius: f32, color: Rgb) {
     }
 }
 
-/// Round numbers within a range, 3 to 8 of them, and how they are written.
-fn ticks([lo, hi]: [f64; 2]) -> Vec<(f64, String)> {
+/// Round numbers within a range, 3 to 8 of them where there are as many, and how they are written.
+fn ticks([lo, hi]: [f64; 2], counts: bool) -> Vec<(f64, String)> {
     let rough = (hi - lo) / 5.0;
     let decade = 10.0_f64.powf(rough.log10().floor());
     let step = [1.0, 2.0, 5.0, 10.0].map(|s| s * decade).into_iter().find(|&s| s >= rough).unwrap_or(rough);
+    let step = if counts { step.max(1.0) } else { step };
     let decimals = (-step.log10().floor()).clamp(0.0, 12.0) as usize;
     let label = |value: f64| {
-        if step >= 1e6 || step < 1e-4 { format!("{value:.1e}") } else { format!("{value:.decimals$}") }
+        if (1e-4..1e6).contains(&step) { format!("{value:.decimals$}") } else { format!("{value:.1e}") }
     };
     let (first, last) = ((lo / step - 1e-9).ceil() as i64, (hi / step + 1e-9).floor() as i64);
     let ticks = (first..=last).map(|tick| tick as f64 * step);
@@ -126,7 +127,7 @@ mod tests {
     use super::*;
 
     fn labels(range: [f64; 2]) -> Vec<String> {
-        ticks(range).into_iter().map(|(_, label)| label).collect()
+        ticks(range, false).into_iter().map(|(_, label)| label).collect()
     }
 
     #[test]
@@ -141,9 +142,15 @@ mod tests {
     }
 
     #[test]
+    fn counts_have_whole_numbers() {
+        let labels: Vec<String> = ticks([11.0, 13.0], true).into_iter().map(|(_, label)| label).collect();
+        assert_eq!(labels, ["11", "12", "13"]);
+    }
+
+    #[test]
     fn a_bar_runs_from_the_colour_of_the_least_at_the_bottom_to_that_of_the_most_at_the_top() {
         let mut image = Image { width: 400, height: 300, pixels: vec![[255; 4]; 400 * 300] };
-        let legend = Legend::Bar { title: "speed".into(), map: ColorMap::Viridis, range: [0.0, 1.0] };
+        let legend = Legend::Bar { title: "speed".into(), map: ColorMap::Viridis, range: [0.0, 1.0], counts: false };
         legend.draw(&mut image, [0; 3]);
         let x = (400.0 - legend.width(300) + 1.2 * letter(300)) as u32;
         let near = |[r, g, b, _]: [u8; 4], color: Rgb| [r, g, b].iter().zip(color).all(|(a, b)| a.abs_diff(b) < 6);

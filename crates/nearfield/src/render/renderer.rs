@@ -1,7 +1,7 @@
 //! From a system to a picture.
 
 use super::{
-    Background, Error, Focus, Image, Options,
+    Background, ColorBy, Error, Focus, Image, Options,
     camera::Camera,
     color::{self, encoded, light},
     focus,
@@ -47,14 +47,14 @@ impl Renderer {
         let colored = scene::is_colored_by_number(&options);
         if colored && options.color_range.is_none() {
             let values = values::of(system, options.color_by)?;
-            range = values::range(&values.unwrap_or_default());
+            range = values::range(&values.unwrap_or_default(), options.color_by);
         }
         let names = &system.interaction.types;
         let legend = if !options.draw_legend || options.focus.is_some() {
             Legend::None
         } else if colored {
             let title = options.label.clone().unwrap_or_else(|| values::title(options.color_by, &system.radii));
-            Legend::Bar { title, map: options.color_map, range }
+            Legend::Bar { title, map: options.color_map, range, counts: options.color_by == ColorBy::Neighbors }
         } else if names.len() > 1 {
             Legend::Names(names.iter().zip(0..).map(|(kind, k)| (kind.name.clone(), color::of_type(k))).collect())
         } else {

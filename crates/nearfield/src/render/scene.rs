@@ -26,7 +26,8 @@ const NEIGHBOR_SIZE: f32 = 0.5;
 const OTHER_SIZE: f32 = 0.35;
 /// Size of particles inside their shapes, which would hide much else at full size.
 const INNER_SIZE: f32 = 0.5;
-/// Thickness of the box's edges, of rays and of lines to neighbours, and width of the frames of panes, in pixels of a picture 1000 high.
+/// Thickness of the box's edges, of rays and of lines to neighbours, and width of the frames of panes, in pixels of a
+/// picture 1000 high.
 const BOX_WIDTH: f32 = 1.6;
 const RAY_WIDTH: f32 = 4.5;
 const BOND_WIDTH: f32 = 2.5;

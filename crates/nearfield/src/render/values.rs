@@ -35,14 +35,14 @@ pub(super) fn of(system: &System, by: ColorBy) -> Result<Option<Vec<f64>>> {
     })
 }
 
-/// The range of the numbers but for a few outliers; of positive width.
-pub(super) fn range(values: &[f64]) -> [f64; 2] {
+/// The range of the numbers but for a few outliers; of positive width, at least 1 for counts.
+pub(super) fn range(values: &[f64], by: ColorBy) -> [f64; 2] {
     let mut sorted: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
     sorted.sort_unstable_by(f64::total_cmp);
     let Some(last) = sorted.len().checked_sub(1) else { return [0.0, 1.0] };
     let outliers = (OUTLIERS * last as f64) as usize;
     let (lo, hi) = (sorted[outliers], sorted[last - outliers]);
-    let margin = 1e-3 * lo.abs().max(hi.abs()).max(1e-3);
+    let margin = if by == ColorBy::Neighbors { 1.0 } else { 1e-3 * lo.abs().max(hi.abs()).max(1e-3) };
     if hi - lo > 1e-6 * margin { [lo, hi] } else { [lo - margin, hi + margin] }
 }
 
@@ -66,15 +66,16 @@ mod tests {
         let mut values: Vec<f64> = (0..=1000).map(f64::from).collect();
         values[0] = -1e9;
         values.push(f64::NAN);
-        assert_eq!(range(&values), [5.0, 995.0]);
-        assert_eq!(range(&[3.0, 4.0]), [3.0, 4.0]);
+        assert_eq!(range(&values, ColorBy::Speed), [5.0, 995.0]);
+        assert_eq!(range(&[3.0, 4.0], ColorBy::Neighbors), [3.0, 4.0]);
     }
 
     #[test]
     fn the_range_of_equal_numbers_has_a_width() {
         for values in [vec![], vec![0.0; 3], vec![7.0], vec![-1e9; 2]] {
-            let [lo, hi] = range(&values);
+            let [lo, hi] = range(&values, ColorBy::Energy);
             assert!(lo < hi, "{values:?}");
         }
+        assert_eq!(range(&[12.0; 3], ColorBy::Neighbors), [11.0, 13.0]);
     }
 }
