@@ -48,9 +48,9 @@ pub enum Outcome {
         /// For what.
         reason: String,
     },
-    /// It was not begun: by the smaller cases of the family, an evaluation takes longer than was allowed.
+    /// It was not made, because it would take longer than was allowed.
     TooSlow {
-        /// Predicted time of an evaluation, \[s\].
+        /// Predicted time of one evaluation, by smaller cases of the family, or of the whole run of steps, \[s\].
         predicted_seconds: f64,
     },
     /// Another method found another number of pairs in the same input: one of them is wrong.

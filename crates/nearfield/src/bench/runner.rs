@@ -1,7 +1,8 @@
 //! Runs a suite.
 
 use super::{
-    Case, Machine, Options, Outcome, Record, Suite, file::ResultsFile, measure::measure, predict::evaluation_seconds,
+    Case, Machine, Measurement, Options, Outcome, Record, Suite, file::ResultsFile, measure::measure,
+    predict::evaluation_seconds,
 };
 use crate::{Error, Result, device, energy::EnergyMeter, engine};
 use nearfield_core::{Engine, Error as CoreError, Plan, System};
@@ -49,12 +50,7 @@ impl std::ops::AddAssign for Summary {
 ///
 /// # Errors
 /// A device that cannot be used, a file that cannot be read or written. What fails in a measurement is in its record.
-pub fn run(
-    suite: Suite,
-    directory: &Path,
-    options: &Options,
-    progress: &mut dyn FnMut(&Progress),
-) -> Result<Summary> {
+pub fn run(suite: Suite, directory: &Path, options: &Options, progress: &mut dyn FnMut(&Progress)) -> Result<Summary> {
     let mut bench = Bench::new(suite, directory, options)?;
     let cases = cases(suite, options);
     let total = cases.iter().map(|case| case.plans.len()).sum();
@@ -181,16 +177,16 @@ impl<'a> Bench<'a> {
         self.engine.supports(system, plan)?;
         let uuid = self.uuid.as_deref();
         let meter = || uuid.map_or_else(EnergyMeter::cpu, EnergyMeter::gpu);
-        let measurement = measure(&mut *self.engine, system, case, plan, self.options.seconds(), &meter)?;
+        let outcome = measure(&mut *self.engine, system, case, plan, self.options, &meter)?;
+        let Outcome::Measured(Measurement { pairs, .. }) = outcome else { return Ok(outcome) };
         let others = self.results.records.iter().filter(|record| self.is_input(record, case));
         let expected = others.into_iter().find_map(|record| match &record.outcome {
             Outcome::Measured(measurement) => Some(measurement.pairs),
             _ => None,
         });
-        let pairs = measurement.pairs;
         Ok(match expected.filter(|&expected| expected != pairs) {
             Some(expected) => Outcome::Mismatch { pairs, expected },
-            None => Outcome::Measured(measurement),
+            None => outcome,
         })
     }
 }

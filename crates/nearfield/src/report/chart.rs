@@ -102,7 +102,12 @@ impl Figure {
         let letters: usize = self.legend().iter().map(|entry| entry.name.chars().count() + 8).sum();
         let width = 1.0 + letters as f64 * 7.5;
         let columns = self.columns.max(1) as f64;
-        let available = match self.columns { 0 | 1 => 760.0, 2 => 520.0, 3 => 390.0, _ => 320.0 } * columns;
+        let available = match self.columns {
+            0 | 1 => 760.0,
+            2 => 520.0,
+            3 => 390.0,
+            _ => 320.0,
+        } * columns;
         (width / available).ceil() as u32
     }
 

@@ -125,8 +125,8 @@ fn draw_panel<DB: DrawingBackend>(panel: &Panel, area: &Area<DB>, scale: u32) ->
         .margin(8 * scale)
         .margin_right(16 * scale)
         .caption(&panel.title, text(13, scale))
-        .x_label_area_size((if panel.x.label.is_empty() { 24 } else { 38 }) * scale)
-        .y_label_area_size(58 * scale)
+        .x_label_area_size((if panel.x.label.is_empty() { 24 } else { 34 }) * scale)
+        .y_label_area_size(54 * scale)
         .build_cartesian_2d(x.scale(), y.scale())?;
     if !panel.shade.is_empty() {
         let most = panel.shade.iter().map(|p| p.1).fold(f64::MIN_POSITIVE, f64::max);
@@ -273,11 +273,26 @@ fn text(size: u32, scale: u32) -> TextStyle<'static> {
 /// A closed outline about the origin, \[pixels\].
 fn outline(marker: Marker, scale: u32) -> Vec<(i32, i32)> {
     let shape: &[(f64, f64)] = match marker {
-        Marker::Circle => &[(4.0, 0.0), (3.0, 3.0), (0.0, 4.0), (-3.0, 3.0), (-4.0, 0.0), (-3.0, -3.0), (0.0, -4.0), (3.0, -3.0)],
+        Marker::Circle => {
+            &[(4.0, 0.0), (3.0, 3.0), (0.0, 4.0), (-3.0, 3.0), (-4.0, 0.0), (-3.0, -3.0), (0.0, -4.0), (3.0, -3.0)]
+        }
         Marker::Square => &[(3.0, 3.0), (-3.0, 3.0), (-3.0, -3.0), (3.0, -3.0)],
         Marker::Triangle => &[(0.0, -4.0), (4.0, 3.0), (-4.0, 3.0)],
         Marker::Diamond => &[(0.0, -5.0), (4.0, 0.0), (0.0, 5.0), (-4.0, 0.0)],
-        Marker::Cross => &[(1.0, 1.0), (1.0, 4.0), (-1.0, 4.0), (-1.0, 1.0), (-4.0, 1.0), (-4.0, -1.0), (-1.0, -1.0), (-1.0, -4.0), (1.0, -4.0), (1.0, -1.0), (4.0, -1.0), (4.0, 1.0)],
+        Marker::Cross => &[
+            (1.0, 1.0),
+            (1.0, 4.0),
+            (-1.0, 4.0),
+            (-1.0, 1.0),
+            (-4.0, 1.0),
+            (-4.0, -1.0),
+            (-1.0, -1.0),
+            (-1.0, -4.0),
+            (1.0, -4.0),
+            (1.0, -1.0),
+            (4.0, -1.0),
+            (4.0, 1.0),
+        ],
     };
     let at = |&(x, y): &(f64, f64)| ((x * f64::from(scale)) as i32, (y * f64::from(scale)) as i32);
     shape.iter().chain(shape.first()).map(at).collect()

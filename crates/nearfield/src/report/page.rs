@@ -56,7 +56,8 @@ fn machines(records: &[Record]) -> String {
 
 fn describe(machine: &Machine) -> String {
     let cpu = machine.cpu.as_deref().unwrap_or("processor unknown");
-    let memory = machine.memory.map_or(String::new(), |bytes| format!(", {:.0} GiB", bytes as f64 / (1u64 << 30) as f64));
+    let memory =
+        machine.memory.map_or(String::new(), |bytes| format!(", {:.0} GiB", bytes as f64 / (1u64 << 30) as f64));
     format!("{cpu}, {} cores{memory}, {}", machine.cores, machine.system)
 }
 
@@ -82,7 +83,10 @@ fn correctness(records: &[Record]) -> String {
         );
     }
     let count = wrong.len();
-    format!("<p><strong>{count} measurements failed or found other pairs than the rest:</strong></p>\n<ul>\n{}</ul>\n", wrong.concat())
+    format!(
+        "<p><strong>{count} measurements failed or found other pairs than the rest:</strong></p>\n<ul>\n{}</ul>\n",
+        wrong.concat()
+    )
 }
 
 fn text_of<'a>(section: &Section, results: &Results, pictures: &mut impl Iterator<Item = &'a String>) -> String {
@@ -95,7 +99,9 @@ fn text_of<'a>(section: &Section, results: &Results, pictures: &mut impl Iterato
         .claim
         .iter()
         .filter(|claim| claim.suite == suite.name())
-        .map(|claim| format!("<li>{} <span class=\"source\">({})</span></li>\n", escape(&claim.text), escape(&claim.source)))
+        .map(|claim| {
+            format!("<li>{} <span class=\"source\">({})</span></li>\n", escape(&claim.text), escape(&claim.source))
+        })
         .collect();
     if !claims.is_empty() {
         text += &format!("<p>What the paper found:</p>\n<ul>\n{claims}</ul>\n");

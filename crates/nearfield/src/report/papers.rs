@@ -40,7 +40,8 @@ pub(super) struct Claim {
 
 /// The values.
 pub(super) fn papers() -> &'static Papers {
-    static PAPERS: LazyLock<Papers> = LazyLock::new(|| toml::from_str(TEXT).expect("papers.toml is valid, as a test checks"));
+    static PAPERS: LazyLock<Papers> =
+        LazyLock::new(|| toml::from_str(TEXT).expect("papers.toml is valid, as a test checks"));
     &PAPERS
 }
 

@@ -62,10 +62,7 @@ pub(super) fn measured(record: &Record) -> Option<&Measurement> {
 }
 
 /// The different values of a property, in order of appearance.
-pub(super) fn distinct<'a, T: PartialEq>(
-    records: &[&'a Record],
-    property: impl Fn(&'a Record) -> T,
-) -> Vec<T> {
+pub(super) fn distinct<'a, T: PartialEq>(records: &[&'a Record], property: impl Fn(&'a Record) -> T) -> Vec<T> {
     let mut values = Vec::new();
     for record in records {
         let value = property(record);
@@ -100,9 +97,7 @@ pub(super) fn why_not(outcome: &Outcome) -> (&'static str, String) {
         Outcome::Measured(_) => ("", String::new()),
         Outcome::Unsupported { reason } => ("–", reason.clone()),
         Outcome::OutOfMemory { reason } => ("memory", reason.clone()),
-        Outcome::TooSlow { predicted_seconds } => {
-            ("slow", format!("an evaluation would take about {predicted_seconds:.0} s"))
-        }
+        Outcome::TooSlow { predicted_seconds } => ("slow", format!("it would take about {predicted_seconds:.0} s")),
         Outcome::Mismatch { pairs, expected } => ("WRONG", format!("{pairs} pairs instead of {expected}")),
         Outcome::Failed { reason } => ("failed", reason.clone()),
     }

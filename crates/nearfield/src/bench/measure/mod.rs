@@ -5,7 +5,7 @@ mod evaluations;
 mod series;
 mod steps;
 
-use super::{Case, Measure, Measurement, Spread};
+use super::{Case, Measure, Measurement, Options, Outcome, Spread};
 use crate::{Result, energy::EnergyMeter};
 use nearfield_core::{Dynamics, Engine, Plan, Quantities, System};
 use std::time::Instant;
@@ -14,6 +14,8 @@ use std::time::Instant;
 const SINGLE: f64 = 10.0;
 /// Most repetitions.
 const MAX_REPETITIONS: usize = 50;
+/// A run of steps may take this many times as long as one evaluation may.
+const RUN: f64 = 10.0;
 /// Fewest repetitions.
 const MIN_REPETITIONS: usize = 3;
 
@@ -33,14 +35,21 @@ pub(super) fn measure(
     system: &System,
     case: &Case,
     plan: &Plan,
-    seconds: f64,
+    options: &Options,
     meter: &dyn Fn() -> Result<EnergyMeter, String>,
-) -> Result<Measurement> {
+) -> Result<Outcome> {
     // On a GPU, costs are known only where they are recorded or a policy asks for them.
     engine.record_history(matches!(case.measure, Measure::Series { .. } | Measure::Evaluations));
     engine.load(system, plan)?;
+    let seconds = options.seconds();
     let mut trial = Trial { engine, system, dynamics: case.start.dynamics, seconds, step: 0 };
     let (mut measurement, is_slow) = trial.first_look()?;
+    if let Measure::Series { steps } = case.measure {
+        let predicted_seconds = measurement.evaluation_seconds * steps as f64;
+        if predicted_seconds > RUN * options.patience() {
+            return Ok(Outcome::TooSlow { predicted_seconds });
+        }
+    }
     match case.measure {
         Measure::Series { steps } => trial.series(steps, &mut measurement)?,
         Measure::Energy { seconds } => trial.energy(seconds, meter(), &mut measurement)?,
@@ -49,7 +58,7 @@ pub(super) fn measure(
         Measure::Evaluations => trial.evaluations(&mut measurement)?,
     }
     trial.conclude(&mut measurement);
-    Ok(measurement)
+    Ok(Outcome::Measured(measurement))
 }
 
 impl Trial<'_> {

@@ -9,7 +9,7 @@ use crate::bench::{Case, Measure, Options};
 pub(in crate::bench) fn cases(options: &Options) -> Vec<Case> {
     let n = match (options.n.first(), options.quick) {
         (Some(&n), _) => [n; 3],
-        (None, true) => [4000, 20_000, 4000],
+        (None, true) => [4000, 200_000, 4000],
         (None, false) => [220_000, 1_000_000, 75_000],
     };
     let default = if options.quick { 0.6 } else { 10.0 };

@@ -9,7 +9,7 @@ use crate::bench::{Case, Measure, Options};
 pub(in crate::bench) fn cases(options: &Options) -> Vec<Case> {
     let n = match (options.n.first(), options.quick) {
         (Some(&n), _) => [n; 3],
-        (None, true) => [2000, 10_000, 2000],
+        (None, true) => [2000, 200_000, 2000],
         (None, false) => [1_000_000, 1_000_000, 1_000_000],
     };
     let default = if options.quick { 0.4 } else { 5.0 };

@@ -13,8 +13,10 @@ pub(in crate::bench) fn cases(options: &Options) -> Vec<Case> {
     } else {
         (&[2, 4, 8, 16, 32], &[8, 16, 32, 64], &[1, 2, 4, 8, 16, 32])
     };
-    let uniform = pairs(betas, particles).map(|(beta, p)| (format!("uniform beta={beta}"), p, Start::paper_b_uniform(beta, p)));
-    let sphere = pairs(alphas, particles).map(|(alpha, p)| (format!("sphere alpha={alpha}"), p, Start::paper_b_sphere(alpha, p)));
+    let uniform =
+        pairs(betas, particles).map(|(beta, p)| (format!("uniform beta={beta}"), p, Start::paper_b_uniform(beta, p)));
+    let sphere = pairs(alphas, particles)
+        .map(|(alpha, p)| (format!("sphere alpha={alpha}"), p, Start::paper_b_sphere(alpha, p)));
     let limit = options.n.iter().copied().max().unwrap_or(usize::MAX);
     uniform
         .chain(sphere)

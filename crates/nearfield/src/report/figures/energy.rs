@@ -44,7 +44,10 @@ fn meters(records: &[&Record]) -> String {
         Some(match (&energy.meter, &energy.no_meter) {
             (Some(meter), _) => format!("{name} was read by {meter}."),
             (None, reason) => {
-                format!("{name} has no meter: {}. Its energy is not known, and not estimated.", reason.as_deref().unwrap_or(""))
+                format!(
+                    "{name} has no meter: {}. Its energy is not known, and not estimated.",
+                    reason.as_deref().unwrap_or("")
+                )
             }
         })
     };
@@ -70,7 +73,11 @@ fn panels(records: &[&Record], y: Axis, point: impl Fn(&Measurement) -> Option<f
             shade: Vec::new(),
         }
     };
-    distinct(records, |record| record.case.as_str()).into_iter().map(panel).filter(|p| !p.series.is_empty()).collect()
+    distinct(records, |record| record.case.as_str()).into_iter().map(panel).filter(is_shown).collect()
+}
+
+fn is_shown(panel: &Panel) -> bool {
+    panel.series.iter().flat_map(|series| &series.points).any(|point| point.1 > 0.0)
 }
 
 fn efficiency(records: &[&Record]) -> Figure {
@@ -100,7 +107,8 @@ fn power(records: &[&Record]) -> Figure {
     let names = DeviceNames::of(records);
     let panel = |case: &str| {
         let of_case: Vec<&Record> = records.iter().copied().filter(|record| record.case == case).collect();
-        let curve = |_: &Record, m: &Measurement| m.energy.as_ref().map_or_else(Vec::new, |energy| energy.power.clone());
+        let curve =
+            |_: &Record, m: &Measurement| m.energy.as_ref().map_or_else(Vec::new, |energy| energy.power.clone());
         let mut series = curves_by_method(&of_case, &names, |_| true, curve);
         for one in &mut series {
             one.marked = Some(Vec::new());

@@ -6,7 +6,7 @@ use crate::{
     report::{
         chart::{Axis, Figure, Panel, Series, Style},
         palette,
-        results::{distinct, devices, measured, methods},
+        results::{devices, distinct, measured, methods},
         section::Section,
     },
 };

@@ -47,12 +47,8 @@ fn table(records: &[&Record]) -> Table {
     let header = ["device", "n", "method", "sums", "ms a step", "million particle-steps a second", "bytes a particle"];
     let row = |record: &&Record| {
         let sums = if record.plan.deterministic { "deterministic" } else { "default" };
-        let mut row = vec![
-            record.device_name.clone(),
-            record.n.to_string(),
-            record.plan.method.to_string(),
-            sums.to_owned(),
-        ];
+        let mut row =
+            vec![record.device_name.clone(), record.n.to_string(), record.plan.method.to_string(), sums.to_owned()];
         match measured(record) {
             Some(m) => row.extend([
                 number(m.time.median * 1e3),

@@ -28,6 +28,7 @@ pub(super) fn section(records: &[&Record]) -> Section {
          so that r = 160 means many neighbours and r = 1 hardly any. The paper's numbers are from an RTX PRO 6000 \
          Blackwell with RT cores (and CPU-CELL on 64 cores); where the sizes differ, its 50,000 particles stand beside \
          ours for orientation only.",
+        &*format!("Where the paper's numbers are from: {}.", papers().table2.source),
         &sizes_note(records),
     ];
     Section {

@@ -21,11 +21,16 @@ pub(super) fn section(records: &[&Record]) -> Section {
             title: format!("{name}, n = {n}"),
             x: Axis::log("mean number of neighbours"),
             y: Axis::log("ns a particle"),
-            series: by_method(&of_device, &of_one, |_| true, |r, m| {
-                // Where none was found, what was asked for.
-                let asked = r.case.strip_prefix("k=")?.parse().ok()?;
-                Some((if m.neighbors > 0.0 { m.neighbors } else { asked }, m.time.median * 1e9 / r.n as f64))
-            }),
+            series: by_method(
+                &of_device,
+                &of_one,
+                |_| true,
+                |r, m| {
+                    // Where none was found, what was asked for.
+                    let asked = r.case.strip_prefix("k=")?.parse().ok()?;
+                    Some((if m.neighbors > 0.0 { m.neighbors } else { asked }, m.time.median * 1e9 / r.n as f64))
+                },
+            ),
             shade: Vec::new(),
         }
     };

@@ -13,7 +13,7 @@ use crate::{
 };
 
 /// Most points of a line, and most marks.
-const POINTS: usize = 150;
+const POINTS: usize = 100;
 const MARKS: usize = 60;
 
 pub(super) fn section(records: &[&Record]) -> Section {
@@ -29,7 +29,7 @@ pub(super) fn section(records: &[&Record]) -> Section {
     }
     let text = [
         "What finding pairs costs by time step, under four rules for when to rebuild the tree instead of refitting it: \
-         structure and query of rt-list without a skin, periodic. Marks are rebuilds; the shaded area is the number of \
+         structure and query of rt-list without a skin, periodic; medians of a few steps. Marks are rebuilds; the shaded area is the number of \
          interactions per particle, its largest value in the title. The paper has the first three rules; rebuilding at \
          each step is the one it does not show.",
         &sizes_note(records),
@@ -82,14 +82,16 @@ fn figure(records: &[&Record], device: &str, n: usize) -> Figure {
     }
 }
 
-/// Means over a few steps, and marks where the structure was built.
+/// Medians over a few steps, and marks where the structure was built.
 fn line(series: &bench::Series, name: String, k: usize) -> Series {
     let total: Vec<f64> = series.structure.iter().zip(&series.query).map(|(s, q)| (s + q) * 1e-3).collect();
     let width = total.len().div_ceil(POINTS).max(1);
-    let mean = |(k, chunk): (usize, &[f64])| {
-        ((k * width) as f64 + 0.5 * chunk.len() as f64, chunk.iter().sum::<f64>() / chunk.len() as f64)
+    let median = |(k, chunk): (usize, &[f64])| {
+        let mut sorted = chunk.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        ((k * width) as f64 + 0.5 * chunk.len() as f64, sorted[chunk.len() / 2])
     };
-    let points: Vec<_> = total.chunks(width).enumerate().map(mean).collect();
+    let points: Vec<_> = total.chunks(width).enumerate().map(median).collect();
     let at = |&step: &usize| points.get(step / width).map(|p| (step as f64, p.1));
     let marked = if series.builds.len() > MARKS { Vec::new() } else { series.builds.iter().filter_map(at).collect() };
     Series { name, look: look(k + 1), style: Style::Line, points, marked: Some(marked) }
@@ -122,5 +124,9 @@ fn table(records: &[&Record], device: &str, n: usize) -> Table {
         let cells = cells.into_iter().map(|(_, cell)| cell);
         [Cell::text(case)].into_iter().chain(cells).chain([Cell::text(ratio)]).collect()
     });
-    Table { caption: format!("Structure and query seconds of the whole run on {device}, n = {n}"), header, rows: rows.collect() }
+    Table {
+        caption: format!("Structure and query seconds of the whole run on {device}, n = {n}"),
+        header,
+        rows: rows.collect(),
+    }
 }

@@ -52,8 +52,7 @@ fn figure(records: &[&Record], boundary: &str, number: u32) -> Figure {
             };
             Some(measured(of_case.iter().find(is_base)?)?.time.median)
         };
-        let mut series =
-            by_method(&of_case, &names, |_| true, |r, m| Some((r.n as f64, base(r)? / m.time.median)));
+        let mut series = by_method(&of_case, &names, |_| true, |r, m| Some((r.n as f64, base(r)? / m.time.median)));
         series.extend(methods(&of_case).into_iter().filter_map(|method| paper(case, method, &of_case)));
         Panel {
             title: case.trim_end_matches(boundary).trim().into(),
@@ -79,5 +78,11 @@ fn paper(case: &str, method: Method, records: &[&Record]) -> Option<Series> {
     let at = |&n: &usize| Some((n as f64, table.ms(case, n, CPU_CELL)? / table.ms(case, n, name)?));
     let points: Vec<_> = [50_000, 1_000_000].iter().filter(|&&n| n <= 2 * largest).filter_map(at).collect();
     let look = palette::of_method(method);
-    (!points.is_empty()).then(|| Series { name: format!("paper A: {name}"), look, style: Style::Hollow, points, marked: None })
+    (!points.is_empty()).then(|| Series {
+        name: format!("paper A: {name}"),
+        look,
+        style: Style::Hollow,
+        points,
+        marked: None,
+    })
 }
