@@ -114,7 +114,7 @@ impl Error {
     pub fn is_request(&self) -> bool {
         use nearfield_core::Error::{Device, NonFinite};
         match self {
-            Self::Interrupted { .. } | Self::Failed { .. } => false,
+            Self::Interrupted { .. } | Self::Failed { .. } | Self::Figure { .. } => false,
             // At step 0 nothing has run: the particles given overlap.
             Self::Core(NonFinite { step, .. }) => *step == 0,
             Self::Core(Device(_)) => false,

@@ -49,13 +49,18 @@ fn methods_that_cannot_compute_a_case_are_recorded_as_unsupported() {
     let folder = tempdir().unwrap();
     let options = Options { filter: "lattice r=U".into(), ..tiny() };
     run(Suite::Methods, folder.path(), &options);
+    let engine = nearfield::engine(Device::Cpu).unwrap();
     let records = records(Suite::Methods, folder.path());
     for &method in Method::ALL {
         let of_method: Vec<_> = records.iter().filter(|record| record.plan.method == method).collect();
         assert_eq!(of_method.len(), 2, "{method}: walls and periodic");
-        let unsupported = of_method.iter().all(|record| matches!(record.outcome, Outcome::Unsupported { .. }));
-        assert_eq!(unsupported, !method.supports_variable_radii(), "{method}");
+        for record in of_method {
+            let supported = engine.supports(&record.input.build().unwrap(), &record.plan).is_ok();
+            assert_eq!(matches!(record.outcome, Outcome::Unsupported { .. }), !supported, "{method}");
+        }
     }
+    let boxes = records.iter().find(|record| record.plan.method == Method::RtBoxes).unwrap();
+    assert!(matches!(boxes.outcome, Outcome::Unsupported { .. }), "radii differ");
 }
 
 #[test]
