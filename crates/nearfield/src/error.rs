@@ -33,6 +33,17 @@ pub enum Error {
         /// What was looked for.
         reason: String,
     },
+    /// A rebuild policy that needs a meter of electrical energy.
+    #[error(
+        "maintenance gradient:joules needs a meter of electrical energy, and {device} has none: {reason}; \
+             gradient optimises time"
+    )]
+    NoMeter {
+        /// The device.
+        device: String,
+        /// What was looked for.
+        reason: String,
+    },
     /// An input file without a box where one is needed.
     #[error("{file}: the file gives no box, which {why}; only open boundaries do without")]
     NoBox {

@@ -3,6 +3,7 @@
 use crate::{
     Device, Error, Result, Thermo,
     auto::{self, Choice},
+    energy::{EnergyMeter, attach_meter},
     engine,
     observe::{Observer, Sample},
     run::Checkpoint,
@@ -84,12 +85,14 @@ impl SimulationBuilder {
         let plan = Plan { method: choice.method, ..self.plan };
         engine.record_history(self.record_history);
         engine.load(&self.system, &plan)?;
+        attach_meter(&mut *engine, &plan, self.device)?;
         let tail =
             if self.tail_correction { self.system.tail_correction().unwrap_or_default() } else { Default::default() };
         Ok(Simulation {
             engine,
             system: self.system,
             dynamics: self.dynamics,
+            device: self.device,
             plan,
             choice,
             tail,
@@ -125,6 +128,7 @@ pub struct Simulation {
     system: System,
     in_step: bool,
     dynamics: Dynamics,
+    device: Device,
     plan: Plan,
     choice: Choice,
     tail: TailCorrection,
@@ -299,6 +303,14 @@ impl Simulation {
         self.engine.device()
     }
 
+    /// Reads the electrical energy of the device from now on.
+    ///
+    /// # Errors
+    /// Why it has no meter that may be read.
+    pub(crate) fn energy_meter(&self) -> Result<EnergyMeter, String> {
+        EnergyMeter::of(self.device)
+    }
+
     /// What was done so far.
     pub fn report(&self) -> Report {
         self.earlier.clone().followed_by(self.engine.report())
@@ -321,6 +333,7 @@ impl Simulation {
         checkpoint.apply(&mut self.system)?;
         self.earlier = self.report();
         self.engine.load(&self.system, &self.plan)?;
+        attach_meter(&mut *self.engine, &self.plan, self.device)?;
         self.engine.set_memory_order(&checkpoint.order)?;
         self.step = checkpoint.step;
         self.in_step = true;

@@ -37,7 +37,7 @@ pub struct Record {
 #[serde(tag = "outcome", rename_all = "kebab-case")]
 pub enum Outcome {
     /// It was made.
-    Measured(Measurement),
+    Measured(Box<Measurement>),
     /// The method cannot compute this on this device.
     Unsupported {
         /// Why not.
@@ -80,9 +80,11 @@ pub struct Measurement {
     pub time: Spread,
     /// Steps of a repetition; 0 for force evaluations at the start.
     pub steps: u64,
-    /// Seconds of an evaluation to build or refit the structure, on average; 0 where the device's clock was not asked.
+    /// Seconds of an evaluation to build or refit the structure, on average; 0 where the device's clock was not asked. Of
+    /// evaluations that build everything anew: the median of all that is no query, sorting of particles and waiting for
+    /// the device included.
     pub structure_seconds: f64,
-    /// Seconds of an evaluation to find and use the pairs, on average.
+    /// Seconds of an evaluation to find and use the pairs, on average; of evaluations built anew the median.
     pub query_seconds: f64,
     /// Structures built, over all repetitions.
     pub builds: u64,
@@ -94,6 +96,8 @@ pub struct Measurement {
     pub batched_evaluations: u64,
     /// Bytes that the engine holds for a particle.
     pub bytes_per_particle: f64,
+    /// Bytes of these that the structure takes, with what its method stores beside it.
+    pub structure_bytes_per_particle: f64,
     /// What each step cost.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub series: Option<Series>,

@@ -1,10 +1,12 @@
 //! Runs a suite.
 
 use super::{
-    Case, Machine, Measurement, Options, Outcome, Record, Suite, file::ResultsFile, measure::measure,
-    predict::evaluation_seconds,
+    Case, Machine, Options, Outcome, Record, Suite,
+    file::ResultsFile,
+    measure::measure,
+    predict::{evaluation_seconds, scout},
 };
-use crate::{Error, Result, device, energy::EnergyMeter, engine};
+use crate::{Error, Result, device, engine};
 use nearfield_core::{Engine, Error as CoreError, Plan, System};
 use std::{path::Path, time::Instant};
 
@@ -90,8 +92,6 @@ struct Bench<'a> {
     engine: Box<dyn Engine>,
     /// Name for `--device`.
     device: String,
-    /// Identifier of a GPU.
-    uuid: Option<String>,
     machine: Machine,
     results: ResultsFile,
     begin: Instant,
@@ -100,7 +100,7 @@ struct Bench<'a> {
 impl<'a> Bench<'a> {
     fn new(suite: Suite, directory: &Path, options: &'a Options) -> Result<Self> {
         let engine = engine(options.device)?;
-        let (device, uuid) = device::identity(options.device);
+        let (device, _) = device::identity(options.device);
         let cases = cases(suite, options);
         let again = |record: &Record| {
             options.fresh
@@ -109,7 +109,7 @@ impl<'a> Bench<'a> {
                 && cases.iter().any(|case| case.name == record.case && case.start.generate.n == record.n)
         };
         let results = ResultsFile::open(directory, suite, |record| !again(record))?;
-        Ok(Self { suite, options, engine, device, uuid, machine: Machine::this(), results, begin: Instant::now() })
+        Ok(Self { suite, options, engine, device, machine: Machine::this(), results, begin: Instant::now() })
     }
 
     fn is_over(&self) -> bool {
@@ -153,7 +153,8 @@ impl<'a> Bench<'a> {
     }
 
     fn outcome(&mut self, case: &Case, plan: &Plan, system: &mut Option<System>) -> Outcome {
-        let predicted = evaluation_seconds(case, plan, &self.results.records, &self.device);
+        let predicted = evaluation_seconds(case, plan, &self.results.records, &self.device)
+            .or_else(|| scout(&mut *self.engine, case, plan));
         if let Some(predicted_seconds) = predicted.filter(|&seconds| seconds > self.options.patience()) {
             return Outcome::TooSlow { predicted_seconds };
         }
@@ -165,6 +166,7 @@ impl<'a> Bench<'a> {
             Err(Error::Core(error @ CoreError::OutOfMemory { .. })) => {
                 Outcome::OutOfMemory { reason: error.to_string() }
             }
+            Err(error @ Error::NoMeter { .. }) => Outcome::Unsupported { reason: error.to_string() },
             Err(error) => Outcome::Failed { reason: error.to_string() },
         }
     }
@@ -175,10 +177,9 @@ impl<'a> Bench<'a> {
             none => none.insert(case.start.build()?),
         };
         self.engine.supports(system, plan)?;
-        let uuid = self.uuid.as_deref();
-        let meter = || uuid.map_or_else(EnergyMeter::cpu, EnergyMeter::gpu);
-        let outcome = measure(&mut *self.engine, system, case, plan, self.options, &meter)?;
-        let Outcome::Measured(Measurement { pairs, .. }) = outcome else { return Ok(outcome) };
+        let outcome = measure(&mut *self.engine, system, case, plan, self.options)?;
+        let Outcome::Measured(measurement) = &outcome else { return Ok(outcome) };
+        let pairs = measurement.pairs;
         let others = self.results.records.iter().filter(|record| self.is_input(record, case));
         let expected = others.into_iter().find_map(|record| match &record.outcome {
             Outcome::Measured(measurement) => Some(measurement.pairs),

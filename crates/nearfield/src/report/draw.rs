@@ -120,6 +120,15 @@ fn draw_legend<DB: DrawingBackend>(figure: &Figure, area: &Area<DB>, scale: u32)
 }
 
 fn draw_panel<DB: DrawingBackend>(panel: &Panel, area: &Area<DB>, scale: u32) -> Drawn<DB> {
+    if panel.series.iter().all(|series| series.points.is_empty()) {
+        let (width, height) = area.dim_in_pixel();
+        let middle = text(13, scale).pos(Pos::new(HPos::Center, VPos::Center));
+        return area.draw_text(
+            &format!("{}: not measured", panel.title),
+            &middle,
+            (width as i32 / 2, height as i32 / 2),
+        );
+    }
     let (x, y) = (Span::of(panel, &panel.x, |p| p.0), Span::of(panel, &panel.y, |p| p.1));
     let mut chart = ChartBuilder::on(area)
         .margin(8 * scale)

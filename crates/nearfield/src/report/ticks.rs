@@ -27,7 +27,7 @@ pub(super) fn label(value: f64) -> String {
     let size = value.abs();
     let (scaled, suffix) = match size {
         0.0 => return "0".into(),
-        _ if size < 9.99e-4 || size >= 9.99e14 => return format!("{value:.0e}"),
+        _ if !(9.99e-4..9.99e14).contains(&size) => return format!("{value:.0e}"),
         _ if size < 9_999.0 => (value, ""),
         _ if size < 999_999.0 => (value / 1e3, "k"),
         _ if size < 1e9 => (value / 1e6, "M"),

@@ -9,14 +9,19 @@ use nearfield::{
 use std::fs;
 
 /// Figures that a run on one device without a meter has.
-const FIGURES: [&str; 12] = [
+const FIGURES: [&str; 17] = [
     "policies-cpu-200",
     "methods-cpu-200",
     "speedup-wall",
     "speedup-periodic",
     "energy-rate",
     "primitives-uniform-cpu",
+    "primitives-uniform-build-cpu",
+    "primitives-uniform-compute-cpu",
     "primitives-sphere-cpu",
+    "primitives-sphere-build-cpu",
+    "primitives-sphere-compute-cpu",
+    "primitives-memory-cpu",
     "neighbors",
     "scaling",
     "scaling-images-cpu",

@@ -13,24 +13,17 @@ use std::time::Instant;
 const INTERVAL: f64 = 0.2;
 
 impl Trial<'_> {
+    /// The device's meter, where there is one, and a record that says so.
+    pub(super) fn meter(&self) -> (Energy, Option<EnergyMeter>) {
+        match EnergyMeter::of(self.device) {
+            Ok(meter) => (Energy { meter: Some(meter.name().into()), ..Energy::default() }, Some(meter)),
+            Err(reason) => (Energy { no_meter: Some(reason), ..Energy::default() }, None),
+        }
+    }
+
     /// Runs for at least `duration` seconds. Interactions are counted at each reading.
-    pub(super) fn energy(
-        &mut self,
-        duration: f64,
-        meter: Result<EnergyMeter, String>,
-        measurement: &mut Measurement,
-    ) -> Result<()> {
-        let mut energy = Energy::default();
-        let mut meter = match meter {
-            Ok(meter) => {
-                energy.meter = Some(meter.name().into());
-                Some(meter)
-            }
-            Err(reason) => {
-                energy.no_meter = Some(reason);
-                None
-            }
-        };
+    pub(super) fn energy(&mut self, duration: f64, measurement: &mut Measurement) -> Result<()> {
+        let (mut energy, mut meter) = self.meter();
         let mut read = || meter.as_mut().map_or(0.0, EnergyMeter::joules);
         let mut times = Vec::new();
         let (origin, mut last, mut chunk) = (read(), (0.0, 0.0), 1);

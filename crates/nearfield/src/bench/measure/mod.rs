@@ -6,7 +6,7 @@ mod series;
 mod steps;
 
 use super::{Case, Measure, Measurement, Options, Outcome, Spread};
-use crate::{Result, energy::EnergyMeter};
+use crate::{Device, Result, energy::attach_meter};
 use nearfield_core::{Dynamics, Engine, Plan, Quantities, System};
 use std::time::Instant;
 
@@ -16,49 +16,53 @@ const SINGLE: f64 = 10.0;
 const MAX_REPETITIONS: usize = 50;
 /// A run of steps may take this many times as long as one evaluation may.
 const RUN: f64 = 10.0;
-/// Fewest repetitions.
-const MIN_REPETITIONS: usize = 3;
+/// Fewest repetitions, as in paper B.
+const MIN_REPETITIONS: usize = 5;
 
 /// A system on an engine, about to be measured.
 pub(super) struct Trial<'a> {
     pub engine: &'a mut dyn Engine,
     pub system: &'a System,
     pub dynamics: Dynamics,
+    pub device: Device,
     /// Seconds to spend.
     pub seconds: f64,
     pub step: u64,
 }
 
-/// Loads the system and measures. `meter` finds what reads the device's energy.
+/// Loads the system and measures.
 pub(super) fn measure(
     engine: &mut dyn Engine,
     system: &System,
     case: &Case,
     plan: &Plan,
     options: &Options,
-    meter: &dyn Fn() -> Result<EnergyMeter, String>,
 ) -> Result<Outcome> {
     // On a GPU, costs are known only where they are recorded or a policy asks for them.
     engine.record_history(matches!(case.measure, Measure::Series { .. } | Measure::Evaluations));
     engine.load(system, plan)?;
-    let seconds = options.seconds();
-    let mut trial = Trial { engine, system, dynamics: case.start.dynamics, seconds, step: 0 };
+    attach_meter(engine, plan, options.device)?;
+    let (dynamics, device, seconds) = (case.start.dynamics, options.device, options.seconds());
+    let mut trial = Trial { engine, system, dynamics, device, seconds, step: 0 };
     let (mut measurement, is_slow) = trial.first_look()?;
-    if let Measure::Series { steps } = case.measure {
-        let predicted_seconds = measurement.evaluation_seconds * steps as f64;
-        if predicted_seconds > RUN * options.patience() {
-            return Ok(Outcome::TooSlow { predicted_seconds });
-        }
+    let predicted_seconds = match case.measure {
+        Measure::Series { steps } => measurement.evaluation_seconds * steps as f64,
+        // A step, and the evaluation before the first.
+        Measure::Energy { .. } => 2.0 * measurement.evaluation_seconds,
+        Measure::Steps | Measure::Evaluations => 0.0,
+    };
+    if predicted_seconds > RUN * options.patience() {
+        return Ok(Outcome::TooSlow { predicted_seconds });
     }
     match case.measure {
         Measure::Series { steps } => trial.series(steps, &mut measurement)?,
-        Measure::Energy { seconds } => trial.energy(seconds, meter(), &mut measurement)?,
+        Measure::Energy { seconds } => trial.energy(seconds, &mut measurement)?,
         _ if is_slow => {}
         Measure::Steps => trial.steps(&mut measurement)?,
         Measure::Evaluations => trial.evaluations(&mut measurement)?,
     }
     trial.conclude(&mut measurement);
-    Ok(Outcome::Measured(measurement))
+    Ok(Outcome::Measured(Box::new(measurement)))
 }
 
 impl Trial<'_> {
@@ -107,12 +111,16 @@ impl Trial<'_> {
     fn conclude(&self, measurement: &mut Measurement) {
         let report = self.engine.report();
         let evaluations = report.evaluations.max(1) as f64;
-        measurement.structure_seconds = (report.build_seconds + report.refit_seconds) / evaluations;
-        measurement.query_seconds = report.query_seconds / evaluations;
+        if measurement.query_seconds == 0.0 {
+            measurement.structure_seconds = (report.build_seconds + report.refit_seconds) / evaluations;
+            measurement.query_seconds = report.query_seconds / evaluations;
+        }
         measurement.builds = report.builds;
         measurement.refits = report.refits;
         measurement.list_builds = report.list_builds;
         measurement.batched_evaluations = report.batched_evaluations;
-        measurement.bytes_per_particle = report.bytes as f64 / self.system.particles.len() as f64;
+        let n = self.system.particles.len() as f64;
+        measurement.bytes_per_particle = report.bytes as f64 / n;
+        measurement.structure_bytes_per_particle = report.structure_bytes as f64 / n;
     }
 }

@@ -4,6 +4,7 @@ use super::Trial;
 use crate::{
     Result,
     bench::{Measurement, Series, Spread},
+    energy::EnergyMeter,
 };
 use nearfield_core::Quantities;
 
@@ -17,11 +18,12 @@ impl Trial<'_> {
         // Evaluations before the first step are no part of the run.
         let before = self.engine.report().history.len();
         let mut series = Series { interactions: vec![(0, measurement.pairs as f64 / n)], ..Series::default() };
-        let mut total = 0.0;
+        let (mut energy, mut meter) = self.meter();
         while self.step < steps {
             let chunk = (steps / COUNTS).clamp(1, steps - self.step);
             let (seconds, pairs) = self.advance(chunk, Quantities::ALL)?;
-            total += seconds;
+            energy.seconds += seconds;
+            energy.interactions += pairs as f64 * chunk as f64;
             series.interactions.push((self.step, pairs as f64 / n));
         }
         let history = &self.engine.report().history[before..];
@@ -29,9 +31,12 @@ impl Trial<'_> {
         series.structure = history.iter().map(|cost| micro(cost.structure)).collect();
         series.query = history.iter().map(|cost| micro(cost.query)).collect();
         series.builds = (0..history.len()).filter(|&k| history[k].built).collect();
-        measurement.time = Spread::of(vec![total / steps as f64]);
+        energy.joules = meter.as_mut().map_or(0.0, EnergyMeter::joules);
+        energy.steps = steps;
+        measurement.time = Spread::of(vec![energy.seconds / steps as f64]);
         measurement.steps = steps;
         measurement.series = Some(series);
+        measurement.energy = Some(energy);
         Ok(())
     }
 }

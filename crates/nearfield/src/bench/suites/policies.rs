@@ -14,9 +14,15 @@ use nearfield_core::{Boundary, Dynamics, Maintenance, Method, Plan};
 /// The paper's number of particles and steps.
 const PAPER: (usize, u64) = (140_000, 2000);
 const QUICK: (usize, u64) = (1000, 300);
-/// The paper's policies, and rebuilding at each step, which it does not show.
-const POLICIES: [Maintenance; 4] =
-    [Maintenance::Gradient, Maintenance::Fixed(200), Maintenance::Average, Maintenance::Every];
+/// The paper's policies, rebuilding at each step, which it does not show, and its optimiser of energy, where there is a
+/// meter.
+const POLICIES: [Maintenance; 5] = [
+    Maintenance::Gradient,
+    Maintenance::Fixed(200),
+    Maintenance::Average,
+    Maintenance::Every,
+    Maintenance::GradientJoules,
+];
 
 pub(in crate::bench) fn cases(options: &Options) -> Vec<Case> {
     let mut cases = Vec::new();

@@ -8,7 +8,7 @@ use crate::{
         palette::look,
         results::{distinct, measured, sizes, slug},
         section::Section,
-        table::{Cell, Table, mark_least},
+        table::{Cell, Table, mark_least, number},
     },
 };
 
@@ -25,13 +25,15 @@ pub(super) fn section(records: &[&Record]) -> Section {
             let of_size: Vec<&Record> = of_device.iter().copied().filter(|r| r.n == n).collect();
             figures.push(figure(&of_size, name, n));
             tables.push(table(&of_size, name, n));
+            tables.extend(joules(&of_size, name, n));
         }
     }
     let text = [
-        "What finding pairs costs by time step, under four rules for when to rebuild the tree instead of refitting it: \
+        "What finding pairs costs by time step, under several rules for when to rebuild the tree instead of refitting it: \
          structure and query of rt-list without a skin, periodic; medians of a few steps. Marks are rebuilds; the shaded area is the number of \
-         interactions per particle, its largest value in the title. The paper has the first three rules; rebuilding at \
-         each step is the one it does not show.",
+         interactions per particle, its largest value in the title. The paper has gradient, \
+         fixed:200 and average; rebuilding at each step is what it does not show, and gradient:joules, which optimises \
+         energy where the device has a meter, what it leaves to the future.",
         &sizes_note(records),
     ];
     Section {
@@ -64,7 +66,7 @@ fn figure(records: &[&Record], device: &str, n: usize) -> Figure {
         let most = shade.iter().map(|p: &(f64, f64)| p.1).fold(0.0, f64::max);
         let title = case.trim_end_matches(" periodic");
         Panel {
-            title: format!("{title}, up to {} per particle", crate::report::table::number(most)),
+            title: if most > 0.0 { format!("{title}, up to {} per particle", number(most)) } else { title.into() },
             x: Axis::linear("step"),
             y: Axis::linear("ms a step"),
             series: of_case.iter().filter_map(series).collect(),
@@ -111,16 +113,15 @@ fn table(records: &[&Record], device: &str, n: usize) -> Table {
         let mut cells: Vec<_> = policies
             .iter()
             .map(|policy| match total(policy) {
-                Some((seconds, builds)) => {
-                    (Some(seconds), Cell::text(format!("{} ({builds})", crate::report::table::number(seconds))))
-                }
+                Some((seconds, builds)) => (Some(seconds), Cell::text(format!("{} ({builds})", number(seconds)))),
                 None => (None, Cell::text("–")),
             })
             .collect();
         mark_least(&mut cells);
         let others = ["fixed:200", "average"].into_iter().filter_map(total).map(|(s, _)| s);
         let second = others.fold(f64::INFINITY, f64::min);
-        let ratio = total("gradient").map_or("–".into(), |(s, _)| format!("{:.2}x", second / s));
+        let ratio = total("gradient").filter(|_| second.is_finite());
+        let ratio = ratio.map_or("–".into(), |(s, _)| format!("{:.2}x", second / s));
         let cells = cells.into_iter().map(|(_, cell)| cell);
         [Cell::text(case)].into_iter().chain(cells).chain([Cell::text(ratio)]).collect()
     });
@@ -129,4 +130,29 @@ fn table(records: &[&Record], device: &str, n: usize) -> Table {
         header,
         rows: rows.collect(),
     }
+}
+
+/// Energy of the runs, where there was a meter.
+fn joules(records: &[&Record], device: &str, n: usize) -> Option<Table> {
+    let policies = policies(records);
+    let energy = |case: &str, policy: &str| {
+        let record = records.iter().find(|r| r.case == case && r.plan.maintenance.to_string() == policy)?;
+        measured(record)?.energy.as_ref().filter(|energy| energy.meter.is_some())
+    };
+    let row = |case: &str| {
+        let cell = |policy: &String| match energy(case, policy) {
+            Some(energy) => (Some(energy.joules), Cell::number(energy.joules)),
+            None => (None, Cell::text("–")),
+        };
+        let mut cells: Vec<_> = policies.iter().map(cell).collect();
+        mark_least(&mut cells);
+        [Cell::text(case)].into_iter().chain(cells.into_iter().map(|(_, cell)| cell)).collect()
+    };
+    let cases = distinct(records, |record| record.case.as_str());
+    let has_meter = cases.iter().any(|case| policies.iter().any(|policy| energy(case, policy).is_some()));
+    has_meter.then(|| Table {
+        caption: format!("Energy of the whole run on {device}, n = {n}"),
+        header: ["case".to_owned()].into_iter().chain(policies.iter().map(|policy| format!("{policy}, J"))).collect(),
+        rows: cases.into_iter().map(row).collect(),
+    })
 }
