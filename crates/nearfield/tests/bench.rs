@@ -127,7 +127,7 @@ fn what_the_smaller_cases_predict_to_take_too_long_is_not_begun() {
 #[test]
 fn energy_is_measured_or_its_absence_explained() {
     let folder = tempdir().unwrap();
-    run(Suite::Energy, folder.path(), &Options { filter: "lattice r=160 wall".into(), ..tiny() });
+    run(Suite::Energy, folder.path(), &Options { filter: "cluster r=LN[1,330] wall".into(), ..tiny() });
     let mut measured = 0;
     for record in records(Suite::Energy, folder.path()) {
         let measurement = match record.outcome {

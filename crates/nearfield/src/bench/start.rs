@@ -2,7 +2,7 @@
 
 use crate::{
     Result,
-    generate::{Distribution, Generate, Positions, RadiiSpec, sphere_surface_cutoff},
+    generate::{Distribution, Generate, Positions, RadiiSpec, Workload},
 };
 use nearfield_core::{Boundary, Dynamics, Interaction, Radii, System};
 use serde::{Deserialize, Serialize};
@@ -107,21 +107,14 @@ impl Start {
 
     /// Uniform random points of unit density in a periodic box, with `k` neighbours on average.
     pub(super) fn uniform(n: usize, k: f64) -> Self {
-        let generate = Generate { density: Some(1.0), ..resting(Positions::Disordered, n) };
+        let positions = Positions::Disordered;
+        let generate = Generate { positions, n, density: Some(1.0), temperature: 0.0, ..Generate::default() };
         Self::at_rest(generate, (k / (4.0 / 3.0 * PI)).cbrt(), Boundary::Periodic)
     }
 
-    /// Paper B, section 5.2: `p` beta³ uniform points in the unit box, cutoff 1 / beta.
-    pub(super) fn paper_b_uniform(beta: usize, p: usize) -> Self {
-        let generate = Generate { lengths: Some([1.0; 3]), ..resting(Positions::Disordered, p * beta.pow(3)) };
-        Self::at_rest(generate, 1.0 / beta as f64, Boundary::Open)
-    }
-
-    /// Paper B, section 5.3: `p` alpha³ points on the unit sphere with about 9 p neighbours each.
-    pub(super) fn paper_b_sphere(alpha: usize, p: usize) -> Self {
-        let n = p * alpha.pow(3);
-        let generate = Generate { lengths: Some([2.0; 3]), ..resting(Positions::SphereSurface, n) };
-        Self::at_rest(generate, sphere_surface_cutoff(n, 9.0 * p as f64), Boundary::Open)
+    /// A workload of paper B.
+    pub(super) fn paper_b(workload: Workload) -> Self {
+        Self::at_rest(workload.start, workload.cutoff, Boundary::Open)
     }
 
     /// The melt of LAMMPS' benchmark: density 0.8442, cutoff 2.5, from an fcc crystal of the nearest possible size.
@@ -148,8 +141,4 @@ impl Start {
 
 fn varied(distribution: Distribution, largest: f64) -> RadiiSpec {
     RadiiSpec { distribution, range: [1.0, largest], ..RadiiSpec::default() }
-}
-
-fn resting(positions: Positions, n: usize) -> Generate {
-    Generate { positions, n, temperature: 0.0, ..Generate::default() }
 }

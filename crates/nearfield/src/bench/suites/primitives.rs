@@ -5,7 +5,10 @@
 //! but for `cluster` and, where there are few particles, all pairs.
 
 use super::plans_at_rest;
-use crate::bench::{Case, Measure, Options, Start};
+use crate::{
+    bench::{Case, Measure, Options, Start},
+    generate::Workload,
+};
 use nearfield_core::{Method, Order, Plan};
 
 pub(in crate::bench) fn cases(options: &Options) -> Vec<Case> {
@@ -14,10 +17,10 @@ pub(in crate::bench) fn cases(options: &Options) -> Vec<Case> {
     } else {
         (&[2, 4, 8, 16, 32], &[8, 16, 32, 64, 128], &[1, 2, 4, 8, 16, 32])
     };
-    let uniform =
-        pairs(betas, particles).map(|(beta, p)| (format!("uniform beta={beta}"), p, Start::paper_b_uniform(beta, p)));
+    let uniform = pairs(betas, particles)
+        .map(|(beta, p)| (format!("uniform beta={beta}"), p, Start::paper_b(Workload::uniform(beta, p))));
     let sphere = pairs(alphas, particles)
-        .map(|(alpha, p)| (format!("sphere alpha={alpha}"), p, Start::paper_b_sphere(alpha, p)));
+        .map(|(alpha, p)| (format!("sphere alpha={alpha}"), p, Start::paper_b(Workload::sphere_surface(alpha, p))));
     let limit = options.n.iter().copied().max().unwrap_or(usize::MAX);
     uniform
         .chain(sphere)

@@ -118,7 +118,7 @@ const METHOD: &[Key] = &[
     key(
         "maintenance",
         Accepts::Names(|| vec!["every", "fixed:K", "average", "gradient", "gradient:joules", "displacement"]),
-        "when a BVH is rebuilt instead of refitted; gradient:joules needs an energy meter",
+        "when a BVH is rebuilt instead of refitted",
     ),
     key("images", Accepts::Names(|| or_auto(Images::ALL.iter().map(|i| i.name()))), "periodic images of BVH methods"),
     key("order", Accepts::Names(|| Order::ALL.iter().map(|o| o.name()).collect()), "of particles in memory"),
