@@ -8,7 +8,7 @@
 //! | make initial conditions | [`generate`] |
 //! | read and write files | [`io`] |
 //! | draw pictures | [`render`] |
-//! | repeat the papers' experiments | [`bench`] |
+//! | repeat the papers' experiments | [`mod@bench`] |
 //!
 //! ```
 //! use nearfield::{Boundary, ListKind, ListRequest, NeighborSearch, SimBox};

@@ -120,8 +120,12 @@ fn what_the_smaller_cases_predict_to_take_too_long_is_not_begun() {
     let summary = run(Suite::Scaling, folder.path(), &options);
     assert_eq!((summary.measured, summary.impossible), (1, 1));
     let last = records(Suite::Scaling, folder.path()).pop().unwrap();
-    assert!(matches!(last.outcome, Outcome::TooSlow { predicted_seconds } if predicted_seconds > 0.0));
+    assert!(matches!(last.outcome, Outcome::TooSlow { predicted_seconds, .. } if predicted_seconds > 0.0));
     assert_eq!(last.n, 400);
+    // With more patience it is measured after all.
+    let patient = Options { patience: Some(100.0), ..options };
+    let summary = run(Suite::Scaling, folder.path(), &patient);
+    assert_eq!((summary.measured, summary.skipped), (1, 1));
 }
 
 #[test]

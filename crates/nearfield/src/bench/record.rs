@@ -52,6 +52,8 @@ pub enum Outcome {
     TooSlow {
         /// Predicted time of one evaluation, by smaller cases of the family, or of the whole run of steps, \[s\].
         predicted_seconds: f64,
+        /// The patience it was too slow for, \[s\]; with more, it is tried again.
+        patience: f64,
     },
     /// Another method found another number of pairs in the same input: one of them is wrong.
     Mismatch {

@@ -48,7 +48,8 @@ impl std::ops::AddAssign for Summary {
     }
 }
 
-/// Measures what the suite's file in `directory` does not hold yet. `progress` is called before each measurement.
+/// Measures what the suite's file in `directory` does not hold yet, and again what failed or was too slow for a smaller
+/// patience. `progress` is called before each measurement.
 ///
 /// # Errors
 /// A device that cannot be used, a file that cannot be read or written. What fails in a measurement is in its record.
@@ -103,10 +104,15 @@ impl<'a> Bench<'a> {
         let (device, _) = device::identity(options.device);
         let cases = cases(suite, options);
         let again = |record: &Record| {
-            options.fresh
-                && record.device == device
+            let is_asked_for = record.device == device
                 && record.quick == options.quick
-                && cases.iter().any(|case| case.name == record.case && case.start.generate.n == record.n)
+                && cases.iter().any(|case| case.name == record.case && case.start.generate.n == record.n);
+            let has_hope = match record.outcome {
+                Outcome::Failed { .. } => true,
+                Outcome::TooSlow { patience, .. } => patience < options.patience(),
+                _ => false,
+            };
+            is_asked_for && (options.fresh || has_hope)
         };
         let results = ResultsFile::open(directory, suite, |record| !again(record))?;
         Ok(Self { suite, options, engine, device, machine: Machine::this(), results, begin: Instant::now() })
@@ -155,8 +161,9 @@ impl<'a> Bench<'a> {
     fn outcome(&mut self, case: &Case, plan: &Plan, system: &mut Option<System>) -> Outcome {
         let predicted = evaluation_seconds(case, plan, &self.results.records, &self.device)
             .or_else(|| scout(&mut *self.engine, case, plan));
-        if let Some(predicted_seconds) = predicted.filter(|&seconds| seconds > self.options.patience()) {
-            return Outcome::TooSlow { predicted_seconds };
+        let patience = self.options.patience();
+        if let Some(predicted_seconds) = predicted.filter(|&seconds| seconds > patience) {
+            return Outcome::TooSlow { predicted_seconds, patience };
         }
         match self.measurement(case, plan, system) {
             Ok(outcome) => outcome,

@@ -1,4 +1,4 @@
-//! Figures, tables and a page of what [`crate::bench`] measured, beside the papers' values: what `nearfield plot` does,
+//! Figures, tables and a page of what [`mod@crate::bench`] measured, beside the papers' values: what `nearfield plot` does,
 //! for programs.
 //!
 //! [`plot`] reads the results, each suite's file in `figures/` says what is shown of them, `draw.rs` draws that, and

@@ -97,7 +97,7 @@ pub(super) fn why_not(outcome: &Outcome) -> (&'static str, String) {
         Outcome::Measured(_) => ("", String::new()),
         Outcome::Unsupported { reason } => ("–", reason.clone()),
         Outcome::OutOfMemory { reason } => ("memory", reason.clone()),
-        Outcome::TooSlow { predicted_seconds } => ("slow", format!("it would take about {predicted_seconds:.0} s")),
+        Outcome::TooSlow { predicted_seconds, .. } => ("slow", format!("it would take about {predicted_seconds:.0} s")),
         Outcome::Mismatch { pairs, expected } => ("WRONG", format!("{pairs} pairs instead of {expected}")),
         Outcome::Failed { reason } => ("failed", reason.clone()),
     }

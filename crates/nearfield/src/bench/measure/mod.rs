@@ -51,8 +51,9 @@ pub(super) fn measure(
         Measure::Energy { .. } => 2.0 * measurement.evaluation_seconds,
         Measure::Steps | Measure::Evaluations => 0.0,
     };
-    if predicted_seconds > RUN * options.patience() {
-        return Ok(Outcome::TooSlow { predicted_seconds });
+    let patience = options.patience();
+    if predicted_seconds > RUN * patience {
+        return Ok(Outcome::TooSlow { predicted_seconds, patience });
     }
     match case.measure {
         Measure::Series { steps } => trial.series(steps, &mut measurement)?,
