@@ -73,7 +73,7 @@ impl Method {
     /// Whether particles may differ in search radius. A point ray from i finds the j whose box holds i, that is
     /// d < r_j; a gather that needs max(r_i, r_j) therefore misses pairs unless the radii are equal.
     pub fn supports_variable_radii(self) -> bool {
-        !matches!(self, Self::RtPerse | Self::RtBoxes)
+        !matches!(self, Self::RtPerse | Self::RtBoxes | Self::Cluster)
     }
 }
 

@@ -19,8 +19,7 @@ impl Index {
     pub fn new(plan: &Plan) -> Self {
         match plan.method {
             Method::Brute => Self::Brute(Brute::default()),
-            Method::Cell => Self::Grid(Grid::default()),
-            Method::Cluster => unreachable!("refused by supports"),
+            Method::Cell | Method::Cluster => Self::Grid(Grid::default()),
             Method::RtList | Method::RtForces | Method::RtPerse | Method::RtBoxes => {
                 Self::Bvh(Box::new(Bvh::new(plan.images)))
             }
@@ -40,6 +39,13 @@ impl Index {
             Self::Brute(brute) => brute,
             Self::Grid(grid) => grid,
             Self::Bvh(bvh) => &**bvh,
+        }
+    }
+
+    pub fn grid(&self) -> Option<&Grid> {
+        match self {
+            Self::Grid(grid) => Some(grid),
+            Self::Brute(_) | Self::Bvh(_) => None,
         }
     }
 

@@ -22,6 +22,7 @@ impl Loaded {
     /// See [`nearfield_core::Engine::advance`].
     pub fn advance(&mut self, dynamics: &Dynamics, from: u64, steps: u64, quantities: Quantities) -> Result<Totals> {
         dynamics.validate()?;
+        self.dt = dynamics.dt;
         self.physics.cap = if dynamics.max_displacement > 0.0 { OVERLAP_CAP } else { f32::INFINITY };
         if !self.forces_valid || steps == 0 {
             let wanted = if steps == 0 { quantities } else { Quantities::FORCES };
