@@ -10,23 +10,15 @@ use std::ops::Range;
 pub(super) const PAGE: usize = 64;
 
 /// Evaluations that an inner list is meant to serve.
-const HORIZON: f32 = 5.0;
+const HORIZON: f32 = 6.0;
+
+/// Least part of the budget it wants that a particle must be left by the outer list.
+const LEAST_BUDGET: f32 = 0.25;
 
 /// Eight vectors, an array for each component.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C, align(32))]
 pub(super) struct Octet(pub [[f32; BLOCK]; 3]);
-
-/// What motion has done to the lists.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Fate {
-    /// Both still hold every pair.
-    Serves,
-    /// Some particle has used up its budget: the inner list must be pruned from the outer one.
-    Prune,
-    /// Some particle has moved half the skin: the outer list must be built.
-    Outrun,
-}
 
 /// Blocks of eight particles. Those of a pencil are sorted along x, the last block of each pencil is padded.
 #[derive(Default)]
@@ -53,12 +45,10 @@ pub(super) struct Blocks {
     at_build: Vec<Octet>,
     at_prune: Vec<Octet>,
     order: Vec<u32>,
-    /// Most that a particle may move before the outer list is outrun, squared; negative when nothing may.
-    limit2: f32,
+    /// Most that a particle may move before the outer list is outrun; negative when nothing may.
+    limit: f32,
     /// Budget for what velocities do not foretell.
     surprise: f32,
-    /// Largest part of half the skin that budgets may take.
-    largest_budget: f32,
     evaluations_since_prune: u32,
 }
 
@@ -123,7 +113,9 @@ impl Blocks {
         for vectors in [&mut self.position, &mut self.crossings, &mut self.at_build, &mut self.at_prune] {
             vectors.resize(n, Octet::default());
         }
-        self.budget.resize(n, [0.0; BLOCK]);
+        // Padding does not move.
+        self.budget.clear();
+        self.budget.resize(n, [f32::INFINITY; BLOCK]);
         self.crossed.resize(n, false);
         self.kind.clear();
         if !moving.kind.is_empty() {
@@ -155,47 +147,56 @@ impl Blocks {
         self.crossed.fill(false);
         // What is measured of a displacement is rounded like a coordinate.
         let slack = conservative_range(0.0, self.extent);
-        let limit = 0.5 * skin * (1.0 - 1e-5) - slack;
-        self.limit2 = if limit > 0.0 { limit * limit } else { -1.0 };
-        self.largest_budget = limit.max(0.0);
+        self.limit = 0.5 * skin * (1.0 - 1e-5) - slack;
         self.surprise = if self.surprise > 0.0 { self.surprise } else { 0.01 * self.cutoff };
         self.evaluations_since_prune = 0;
     }
 
-    /// Gives each particle a budget of displacement for the next few evaluations, by its velocity.
-    pub fn plan_motion(&mut self, moving: Moving) {
+    /// Gives each particle a budget of displacement for the next few evaluations, by its velocity and no more than what
+    /// the outer list leaves it. False when that is too little for some particle.
+    pub fn plan_motion(&mut self, moving: Moving) -> bool {
         // A budget that lasts longer or shorter than meant is too large or too small.
         if self.evaluations_since_prune > 0 {
             let lasted = self.evaluations_since_prune as f32 / HORIZON;
             self.surprise *= lasted.recip().clamp(0.9, 1.2);
         }
         self.evaluations_since_prune = 0;
-        let (surprise, largest) = (self.surprise.min(self.largest_budget), self.largest_budget);
         let horizon = HORIZON * moving.dt;
-        let (first, position) = (&self.first, &self.position);
-        let pages = self.budget.par_chunks_mut(PAGE).zip(self.at_prune.par_chunks_mut(PAGE));
-        pages.enumerate().for_each(|(page, (budgets, at_prune))| {
+        let Self { first, position, at_build, crossings, period, limit, surprise, budget, at_prune, .. } = self;
+        let pages = budget.par_chunks_mut(PAGE).zip(at_prune.par_chunks_mut(PAGE));
+        let enough = pages.enumerate().map(|(page, (budgets, at_prune))| {
+            let mut least = f32::INFINITY;
             for (k, (budget, at_prune)) in budgets.iter_mut().zip(at_prune).enumerate() {
                 let b = page * PAGE + k;
                 let particles = first[b] as usize..first[b + 1] as usize;
                 *at_prune = position[b];
                 let [x, y, z] = moving.velocity.map(|v| &v[particles.clone()]);
                 for (lane, ((x, y), z)) in x.iter().zip(y).zip(z).enumerate() {
-                    let speed = (x * x + y * y + z * z).sqrt();
-                    budget[lane] = (horizon * speed + surprise).min(largest);
+                    let mut moved2 = 0.0;
+                    for axis in 0..3 {
+                        let d = position[b].0[axis][lane] - at_build[b].0[axis][lane];
+                        let d = d + crossings[b].0[axis][lane] * period[axis];
+                        moved2 += d * d;
+                    }
+                    let wanted = horizon * (x * x + y * y + z * z).sqrt() + *surprise;
+                    let left = *limit - moved2.sqrt();
+                    budget[lane] = wanted.min(left).max(0.0);
+                    least = least.min(left - LEAST_BUDGET * wanted);
                 }
             }
+            least
         });
+        enough.reduce(|| f32::INFINITY, f32::min) >= 0.0
     }
 
-    /// Takes new positions of the same particles and measures how far they have moved.
-    pub fn refresh(&mut self, position: [&[f32]; 3]) -> Fate {
+    /// Takes new positions of the same particles. Whether none has used up its budget.
+    pub fn refresh(&mut self, position: [&[f32]; 3]) -> bool {
         self.evaluations_since_prune += 1;
         let (first, at_build, at_prune, budget) = (&self.first, &self.at_build, &self.at_prune, &self.budget);
-        let (period, limit2) = (self.period, self.limit2);
+        let period = self.period;
         let pages = self.position.par_chunks_mut(PAGE);
         let pages = pages.zip(self.crossings.par_chunks_mut(PAGE)).zip(self.crossed.par_chunks_mut(PAGE));
-        let moved = pages.enumerate().map(|(page, ((to, crossings), crossed))| {
+        let kept = pages.enumerate().map(|(page, ((to, crossings), crossed))| {
             let blocks = page * PAGE..page * PAGE + to.len();
             super::isa().run(Refresh {
                 first: &first[blocks.start..=blocks.end],
@@ -209,14 +210,7 @@ impl Blocks {
                 crossed,
             })
         });
-        let (farthest2, over_budget) = moved.reduce(|| (0.0, false), |a, b| (a.0.max(b.0), a.1 | b.1));
-        if farthest2 >= limit2 {
-            Fate::Outrun
-        } else if over_budget {
-            Fate::Prune
-        } else {
-            Fate::Serves
-        }
+        kept.reduce(|| true, |a, b| a & b)
     }
 
     /// Bytes held.
@@ -243,18 +237,17 @@ struct Refresh<'a> {
 }
 
 impl lanes::Kernel for Refresh<'_> {
-    /// The largest squared displacement since the build, and whether some particle has exceeded its budget.
-    type Output = (f32, bool);
+    /// Whether no particle has exceeded its budget.
+    type Output = bool;
 
     #[inline(always)]
     #[expect(clippy::needless_range_loop, reason = "flat loops over lanes, which the compiler vectorises")]
-    fn run<L: lanes::Lanes>(self, _: L) -> (f32, bool) {
+    fn run<L: lanes::Lanes>(self, _: L) -> bool {
         let Self { first, at_build, at_prune, budget, position, period, to, crossings, crossed } = self;
-        let (mut farthest2, mut over) = ([0.0f32; BLOCK], [0.0f32; BLOCK]);
+        let mut all_kept = true;
         for k in 0..to.len() {
             let particles = first[k] as usize..first[k + 1] as usize;
-            let (mut since_build2, mut since_prune2) = ([0.0f32; BLOCK], [0.0f32; BLOCK]);
-            let mut crossing_seen = [0.0f32; BLOCK];
+            let mut moved2 = [0.0f32; BLOCK];
             for axis in 0..3 {
                 let from = &position[axis][particles.clone()];
                 let x = &mut to[k].0[axis];
@@ -263,34 +256,52 @@ impl lanes::Kernel for Refresh<'_> {
                 } else {
                     x[..from.len()].copy_from_slice(from);
                 }
-                let length = period[axis];
-                let half = if length > 0.0 { 0.5 * length } else { f32::INFINITY };
-                let (built, pruned) = (&at_build[k].0[axis], &at_prune[k].0[axis]);
-                let crossing = &mut crossings[k].0[axis];
                 for lane in 0..BLOCK {
-                    // The nearest image: whoever moves by half the box has outrun the list either way.
-                    let d = x[lane] - built[lane];
-                    let c = if d > half { -1.0 } else { 0.0 } + if d < -half { 1.0 } else { 0.0 };
-                    crossing[lane] = c;
-                    crossing_seen[lane] += f32::abs(c);
-                    let d = d + c * length;
-                    since_build2[lane] += d * d;
-                    let d = x[lane] - pruned[lane];
-                    let c = if d > half { -1.0 } else { 0.0 } + if d < -half { 1.0 } else { 0.0 };
-                    let d = d + c * length;
-                    since_prune2[lane] += d * d;
+                    let d = x[lane] - at_prune[k].0[axis][lane];
+                    moved2[lane] += d * d;
                 }
             }
-            crossed[k] = crossing_seen.iter().sum::<f32>() > 0.0;
+            let mut over = 0.0f32;
             for lane in 0..BLOCK {
-                let (farthest, moved) = (since_build2[lane], since_prune2[lane]);
-                farthest2[lane] = if farthest > farthest2[lane] { farthest } else { farthest2[lane] };
-                let beyond = if moved > budget[k][lane] * budget[k][lane] { 1.0 } else { 0.0 };
-                over[lane] += beyond;
+                over += if moved2[lane] >= budget[k][lane] * budget[k][lane] { 1.0 } else { 0.0 };
+            }
+            // Who crosses a periodic face seems to move far.
+            if over > 0.0 || crossed[k] {
+                let n = particles.len();
+                all_kept &= cross(&to[k], [&at_build[k], &at_prune[k]], n, &budget[k], period, &mut crossings[k]);
+                crossed[k] = crossings[k] != Octet::default();
             }
         }
-        (farthest2.into_iter().fold(0.0, f32::max), over.iter().sum::<f32>() > 0.0)
+        all_kept
     }
+}
+
+/// Counts the periods that particles of a block have crossed since the build. Whether, with them, the first `n` keep
+/// to their budgets.
+#[cold]
+fn cross(
+    now: &Octet,
+    [at_build, at_prune]: [&Octet; 2],
+    n: usize,
+    budget: &[f32; BLOCK],
+    period: [f32; 3],
+    crossings: &mut Octet,
+) -> bool {
+    let mut kept = true;
+    for lane in 0..n {
+        let mut moved2 = 0.0;
+        for axis in 0..3 {
+            // The nearest image: whoever moves by half the box has outrun the list either way.
+            let nearest = |d: f32| if period[axis] > 0.0 { -(d / period[axis]).round() } else { 0.0 };
+            let x = now.0[axis][lane];
+            crossings.0[axis][lane] = nearest(x - at_build.0[axis][lane]);
+            let d = x - at_prune.0[axis][lane];
+            let d = d + nearest(d) * period[axis];
+            moved2 += d * d;
+        }
+        kept &= moved2 < budget[lane] * budget[lane];
+    }
+    kept
 }
 
 /// Sorts `order` by `x`, nearly sorted as it is: the grid has put particles into cells of two.

@@ -55,11 +55,11 @@ impl lanes::Kernel for Kernel<'_> {
             for (k, &j) in list.blocks[segment.start as usize..segment.end as usize].iter().enumerate() {
                 let j = j as usize;
                 let at = twice(lanes, &blocks.position[j]);
-                let crossings = twice(lanes, &blocks.crossings[j]);
+                let shifts = quad.shifts(lanes, blocks, j);
                 let own = segment.own && k == 0;
                 let pairs = if own { own_pairs(cluster) } else { [u16::MAX; VECTORS] };
                 for v in 0..VECTORS {
-                    let r2 = squared_length(lanes, quad.displacement::<true>(lanes, v, at, crossings));
+                    let r2 = squared_length(lanes, quad.displacement::<true>(lanes, v, at, &shifts));
                     let mut inside = lanes.lt(r2, range2) & pairs[v];
                     while inside != 0 {
                         let lane = inside.trailing_zeros() as usize;

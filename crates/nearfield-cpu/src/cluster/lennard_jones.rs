@@ -23,8 +23,9 @@ pub(super) trait Law: Copy + Sync {
     /// What the functions below need to know of pairs of two particles' types with those of eight.
     fn coefficients<L: Lanes>(&self, lanes: L, i: [u32; 2], j: &[u32; BLOCK]) -> [L::F; 4];
 
-    /// `-(1/r) dU/dr` from `y` = 1 / r².
-    fn f_over_r<L: Lanes>(&self, lanes: L, y: L::F, c: &[L::F; 4]) -> L::F;
+    /// `-(1/r) dU/dr` from `y` = 1 / r², for several vectors at once: each operation on all of them before the next,
+    /// so that none waits for the one before.
+    fn f_over_r<L: Lanes, const K: usize>(&self, lanes: L, y: &[L::F; K], c: &[[L::F; 4]; K]) -> [L::F; K];
 
     /// `U` from `y` = 1 / r² and r².
     fn energy<L: Lanes>(&self, lanes: L, y: L::F, r2: L::F, c: &[L::F; 4]) -> L::F;
@@ -70,10 +71,22 @@ impl Law for Plain {
     }
 
     #[inline(always)]
-    fn f_over_r<L: Lanes>(&self, lanes: L, y: L::F, c: &[L::F; 4]) -> L::F {
-        let y2 = lanes.mul(y, y);
-        let y3 = lanes.mul(y2, y);
-        lanes.mul(lanes.sub(y3, c[0]), lanes.mul(y2, y2))
+    #[expect(clippy::needless_range_loop, reason = "no closures in kernels")]
+    fn f_over_r<L: Lanes, const K: usize>(&self, lanes: L, y: &[L::F; K], c: &[[L::F; 4]; K]) -> [L::F; K] {
+        let (mut y2, mut y3) = (*y, *y);
+        for k in 0..K {
+            y2[k] = lanes.mul(y[k], y[k]);
+        }
+        for k in 0..K {
+            y3[k] = lanes.sub(lanes.mul(y2[k], y[k]), c[k][0]);
+        }
+        for k in 0..K {
+            y2[k] = lanes.mul(y2[k], y2[k]);
+        }
+        for k in 0..K {
+            y3[k] = lanes.mul(y3[k], y2[k]);
+        }
+        y3
     }
 
     #[inline(always)]
@@ -118,18 +131,26 @@ impl<const FORCE_SHIFT: bool> Law for Typed<FORCE_SHIFT> {
 
     #[inline(always)]
     fn coefficients<L: Lanes>(&self, lanes: L, i: [u32; 2], j: &[u32; BLOCK]) -> [L::F; 4] {
-        let [low, high] = i.map(|kind| &self.rows[kind as usize % BLOCK]);
-        let row = |k: usize| lanes.look_up(&low[k], &high[k], j);
-        [row(0), row(1), row(2), row(3)]
+        let (low, high) = (&self.rows[i[0] as usize % BLOCK], &self.rows[i[1] as usize % BLOCK]);
+        [
+            lanes.look_up(&low[0], &high[0], j),
+            lanes.look_up(&low[1], &high[1], j),
+            lanes.look_up(&low[2], &high[2], j),
+            lanes.look_up(&low[3], &high[3], j),
+        ]
     }
 
     #[inline(always)]
-    fn f_over_r<L: Lanes>(&self, lanes: L, y: L::F, c: &[L::F; 4]) -> L::F {
-        let s2 = lanes.mul(c[0], y);
-        let s6 = lanes.mul(lanes.mul(s2, s2), s2);
-        let f = lanes.mul(lanes.mul(c[1], y), lanes.mul(s6, lanes.sub(s6, lanes.splat(0.5))));
-        let f = if FORCE_SHIFT { lanes.sub(f, lanes.mul(c[3], lanes.sqrt(y))) } else { f };
-        lanes.min(f, lanes.splat(self.cap))
+    fn f_over_r<L: Lanes, const K: usize>(&self, lanes: L, y: &[L::F; K], c: &[[L::F; 4]; K]) -> [L::F; K] {
+        let mut out = *y;
+        for k in 0..K {
+            let s2 = lanes.mul(c[k][0], y[k]);
+            let s6 = lanes.mul(lanes.mul(s2, s2), s2);
+            let f = lanes.mul(lanes.mul(c[k][1], y[k]), lanes.mul(s6, lanes.sub(s6, lanes.splat(0.5))));
+            let f = if FORCE_SHIFT { lanes.sub(f, lanes.mul(c[k][3], lanes.sqrt(y[k]))) } else { f };
+            out[k] = lanes.min(f, lanes.splat(self.cap));
+        }
+        out
     }
 
     #[inline(always)]
@@ -164,43 +185,74 @@ impl<P: Law, const ENERGY: bool> lanes::Kernel for Kernel<'_, P, ENERGY> {
     type Output = ();
 
     #[inline(always)]
-    fn run<L: Lanes>(mut self, lanes: L) {
-        let (blocks, list) = (self.blocks, self.list);
+    fn run<L: Lanes>(self, lanes: L) {
+        let Self { law, blocks, list, force, energy } = self;
+        // Slices of one length need but one test of an index.
+        let n = blocks.len();
+        let view = View {
+            law,
+            blocks,
+            position: &blocks.position[..n],
+            crossed: &blocks.crossed[..n],
+            kind: if P::TYPED && !blocks.kind.is_empty() { &blocks.kind[..n] } else { &[] },
+        };
+        let (force, energy) = (&mut force[..n], if ENERGY { &mut energy[..n] } else { energy });
         for segment in &list.segments {
             let cluster = segment.cluster as usize;
             let (block, at) = (cluster / 2, cluster % 2 * CLUSTER);
             let quad = Quad::<L>::new(lanes, blocks, cluster, segment.image);
-            let kinds = if P::TYPED && !blocks.kind.is_empty() { blocks.kind[block] } else { [0; BLOCK] };
+            let kinds = if P::TYPED && !view.kind.is_empty() { view.kind[block] } else { [0; BLOCK] };
             let kinds: [u32; CLUSTER] = [kinds[at], kinds[at + 1], kinds[at + 2], kinds[at + 3]];
             let zero = [[lanes.splat(0.0); 3]; VECTORS];
             let mut sums = Sums::<L> { force: zero, energy: zero };
-            let with_images = segment.image != [0; 3] || blocks.crossed[block];
+            let with_images = segment.image != [0; 3] || view.crossed[block];
             let mut listed = &list.blocks[segment.start as usize..segment.end as usize];
-            if segment.own {
-                let pairs = own_pairs(cluster).map(|mask| lanes.mask(mask));
-                self.add::<L, true>(lanes, &quad, &kinds, listed[0] as usize, pairs, &mut sums);
-                listed = &listed[1..];
+            let mut to = Target { sums: &mut sums, force: &mut *force, energy: &mut *energy };
+            if let (true, &[own, ref others @ ..]) = (segment.own, listed) {
+                let [first, second] = own_pairs(cluster);
+                let pairs = [lanes.mask(first), lanes.mask(second)];
+                if with_images {
+                    view.add::<L, 2, ENERGY, true, true>(lanes, &quad, &kinds, [own as usize; 2], pairs, &mut to);
+                } else {
+                    view.add::<L, 2, ENERGY, false, true>(lanes, &quad, &kinds, [own as usize; 2], pairs, &mut to);
+                }
+                listed = others;
             }
             let all = [lanes.mask(u16::MAX); VECTORS];
-            for &j in listed {
-                let j = j as usize;
-                if with_images || blocks.crossed[j] {
-                    self.add::<L, true>(lanes, &quad, &kinds, j, all, &mut sums);
-                } else {
-                    self.add::<L, false>(lanes, &quad, &kinds, j, all, &mut sums);
+            if with_images {
+                for &j in listed {
+                    view.add::<L, 2, ENERGY, true, false>(lanes, &quad, &kinds, [j as usize; 2], all, &mut to);
+                }
+            } else {
+                let (twos, last) = listed.as_chunks::<2>();
+                for two in twos {
+                    let two = [two[0] as usize, two[1] as usize];
+                    if view.crossed[two[0]] | view.crossed[two[1]] {
+                        for j in two {
+                            view.add::<L, 2, ENERGY, true, false>(lanes, &quad, &kinds, [j; 2], all, &mut to);
+                        }
+                    } else {
+                        view.add::<L, 4, ENERGY, false, false>(lanes, &quad, &kinds, two, all, &mut to);
+                    }
+                }
+                for &j in last {
+                    let j = j as usize;
+                    if view.crossed[j] {
+                        view.add::<L, 2, ENERGY, true, false>(lanes, &quad, &kinds, [j; 2], all, &mut to);
+                    } else {
+                        view.add::<L, 2, ENERGY, false, false>(lanes, &quad, &kinds, [j; 2], all, &mut to);
+                    }
                 }
             }
-            for v in 0..VECTORS {
-                for axis in 0..3 {
-                    let [low, high] = lanes.sum_halves(sums.force[v][axis]);
-                    let to = &mut self.force[block].0[axis];
-                    to[at + 2 * v] -= low;
-                    to[at + 2 * v + 1] -= high;
-                    if ENERGY {
-                        let [low, high] = lanes.sum_halves(sums.energy[v][axis]);
-                        let to = &mut self.energy[block].0[axis];
-                        to[at + 2 * v] += low;
-                        to[at + 2 * v + 1] += high;
+            for axis in 0..3 {
+                let of_four = lanes.sum_halves(sums.force[0][axis], sums.force[1][axis]);
+                for (to, sum) in force[block].0[axis][at..at + CLUSTER].iter_mut().zip(of_four) {
+                    *to -= sum;
+                }
+                if ENERGY {
+                    let of_four = lanes.sum_halves(sums.energy[0][axis], sums.energy[1][axis]);
+                    for (to, sum) in energy[block].0[axis][at..at + CLUSTER].iter_mut().zip(of_four) {
+                        *to += sum;
                     }
                 }
             }
@@ -208,53 +260,90 @@ impl<P: Law, const ENERGY: bool> lanes::Kernel for Kernel<'_, P, ENERGY> {
     }
 }
 
-impl<P: Law, const ENERGY: bool> Kernel<'_, P, ENERGY> {
-    /// The pairs of a cluster and block `j`. Without `GENERAL` none has an image, and all lanes are pairs.
+/// What the kernel adds to.
+struct Target<'a, L: Lanes> {
+    sums: &'a mut Sums<L>,
+    force: &'a mut [Octet],
+    energy: &'a mut [Octet],
+}
+
+/// What the kernel reads.
+struct View<'a, P> {
+    law: P,
+    blocks: &'a Blocks,
+    position: &'a [Octet],
+    crossed: &'a [bool],
+    kind: &'a [[u32; BLOCK]],
+}
+
+impl<P: Law> View<'_, P> {
+    /// The pairs of a cluster and one block (`K` = 2 vectors) or two (`K` = 4): all lanes, or where `MASKED` those of
+    /// `pairs`. Without `SHIFTED` none has an image.
     #[inline(always)]
-    fn add<L: Lanes, const GENERAL: bool>(
-        &mut self,
+    #[expect(clippy::needless_range_loop, reason = "no closures in kernels")]
+    fn add<L: Lanes, const K: usize, const ENERGY: bool, const SHIFTED: bool, const MASKED: bool>(
+        &self,
         lanes: L,
         quad: &Quad<L>,
         kinds: &[u32; CLUSTER],
-        j: usize,
+        j: [usize; 2],
         pairs: [L::M; VECTORS],
-        sums: &mut Sums<L>,
+        to: &mut Target<L>,
     ) {
         let blocks = self.blocks;
-        let at = twice(lanes, &blocks.position[j]);
-        let crossings = if GENERAL { twice(lanes, &blocks.crossings[j]) } else { at };
-        let kinds_j = if P::TYPED && !blocks.kind.is_empty() { &blocks.kind[j] } else { &[0; BLOCK] };
+        let at = [twice(lanes, &self.position[j[0]]), twice(lanes, &self.position[j[1]])];
         let range2 = lanes.splat(blocks.cutoff * blocks.cutoff);
         let zero = lanes.splat(0.0);
-        let (mut force, mut energy) = ([zero; 3], [zero; 3]);
-        for v in 0..VECTORS {
-            let d = quad.displacement::<GENERAL>(lanes, v, at, crossings);
-            let r2 = squared_length(lanes, d);
-            let inside = lanes.less(r2, range2);
-            let inside = if GENERAL { lanes.and(inside, pairs[v]) } else { inside };
-            let y = lanes.reciprocal(inside, r2);
-            let c = self.law.coefficients(lanes, [kinds[2 * v], kinds[2 * v + 1]], kinds_j);
-            let f = self.law.f_over_r(lanes, y, &c);
-            // One that adds up powers of y is zero outside; others must be made so.
-            let f = if P::TYPED { lanes.keep(inside, f) } else { f };
+        let shifts = if SHIFTED { quad.shifts(lanes, blocks, j[0]) } else { [[zero; 3]; VECTORS] };
+        let mut d = [[zero; 3]; K];
+        let (mut r2, mut y, mut c) = ([zero; K], [zero; K], [[zero; 4]; K]);
+        let mut inside = [pairs[0]; K];
+        for k in 0..K {
+            d[k] = quad.displacement::<SHIFTED>(lanes, k % VECTORS, at[k / VECTORS], &shifts);
+        }
+        for k in 0..K {
+            r2[k] = squared_length(lanes, d[k]);
+        }
+        for k in 0..K {
+            let near = lanes.less(r2[k], range2);
+            inside[k] = if MASKED { lanes.and(near, pairs[k % VECTORS]) } else { near };
+            y[k] = lanes.reciprocal(inside[k], r2[k]);
+        }
+        for k in 0..K {
+            let kinds_i = [kinds[k % VECTORS * 2], kinds[k % VECTORS * 2 + 1]];
+            let kinds_j = if P::TYPED && !self.kind.is_empty() { &self.kind[j[k / VECTORS]] } else { &[0; BLOCK] };
+            c[k] = self.law.coefficients(lanes, kinds_i, kinds_j);
+        }
+        let mut f = self.law.f_over_r(lanes, &y, &c);
+        for k in 0..K {
+            // What adds up powers of y is zero outside; others must be made so.
+            f[k] = if P::TYPED { lanes.keep(inside[k], f[k]) } else { f[k] };
             for axis in 0..3 {
-                let along = lanes.mul(f, d[axis]);
-                sums.force[v][axis] = lanes.add(sums.force[v][axis], along);
-                force[axis] = if v == 0 { along } else { lanes.add(force[axis], along) };
-            }
-            if ENERGY {
-                let u = self.law.energy(lanes, y, r2, &c);
-                for (k, value) in [u, lanes.mul(f, r2), lanes.splat(1.0)].into_iter().enumerate() {
-                    let value = lanes.keep(inside, value);
-                    sums.energy[v][k] = lanes.add(sums.energy[v][k], value);
-                    energy[k] = lanes.add(energy[k], value);
-                }
+                d[k][axis] = lanes.mul(f[k], d[k][axis]);
             }
         }
-        for axis in 0..3 {
-            lanes.add_halves(force[axis], &mut self.force[j].0[axis]);
-            if ENERGY {
-                lanes.add_halves(energy[axis], &mut self.energy[j].0[axis]);
+        for b in 0..K / VECTORS {
+            for axis in 0..3 {
+                let both = lanes.add(d[VECTORS * b][axis], d[VECTORS * b + 1][axis]);
+                lanes.add_halves(both, &mut to.force[j[b]].0[axis]);
+            }
+        }
+        for k in 0..K {
+            for axis in 0..3 {
+                let sum = &mut to.sums.force[k % VECTORS][axis];
+                *sum = lanes.add(*sum, d[k][axis]);
+            }
+        }
+        if ENERGY {
+            for k in 0..K {
+                let u = self.law.energy(lanes, y[k], r2[k], &c[k]);
+                let terms = [u, lanes.mul(f[k], r2[k]), lanes.splat(1.0)];
+                for (of, term) in terms.into_iter().enumerate() {
+                    let term = lanes.keep(inside[k], term);
+                    let sum = &mut to.sums.energy[k % VECTORS][of];
+                    *sum = lanes.add(*sum, term);
+                    lanes.add_halves(term, &mut to.energy[j[k / VECTORS]].0[of]);
+                }
             }
         }
     }

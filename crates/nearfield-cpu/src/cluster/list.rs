@@ -11,7 +11,7 @@ use crate::{
 use nearfield_core::predicate::conservative_range;
 use rayon::prelude::*;
 use std::{
-    ops::Range,
+    ops::{Range, RangeInclusive},
     sync::atomic::{AtomicU64, Ordering::Relaxed},
 };
 
@@ -130,20 +130,18 @@ impl lanes::Kernel for Build<'_> {
             let reach = lanes.splat(conservative_reach(&group, blocks.period).powi(2));
             for runs in runs.chunk_by(|a, b| a.image == b.image) {
                 let image = runs[0].image;
-                let quads = [0, 1].map(|half| Quad::<L>::new(lanes, blocks, 2 * b + half, image));
+                let quads =
+                    [Quad::<L>::new(lanes, blocks, 2 * b, image), Quad::<L>::new(lanes, blocks, 2 * b + 1, image)];
                 let start = outer.blocks.len() as u32;
                 second.clear();
                 for run in runs {
                     let first = blocks.block_of[run.start as usize].max(b as u32);
                     let last = blocks.block_of[run.end as usize - 1];
-                    for j in first..=last {
-                        let at = twice(lanes, &blocks.position[j as usize]);
-                        if any_within::<L, true>(lanes, &quads[0], at, at_build(lanes), [reach; VECTORS]) {
-                            outer.blocks.push(j);
-                        }
-                        if any_within::<L, true>(lanes, &quads[1], at, at_build(lanes), [reach; VECTORS]) {
-                            second.push(j);
-                        }
+                    let near = [&mut outer.blocks, &mut *second];
+                    if image == [0; 3] {
+                        find_near::<L, false>(lanes, blocks, &quads, reach, first..=last, near);
+                    } else {
+                        find_near::<L, true>(lanes, blocks, &quads, reach, first..=last, near);
                     }
                 }
                 outer.close(2 * b as u32, image, start);
@@ -161,26 +159,41 @@ impl lanes::Kernel for Build<'_> {
     }
 }
 
-/// No particle has crossed a face yet.
+/// Appends the blocks of a run that are within reach (squared) of either cluster of a block. No particle has crossed a
+/// face yet.
 #[inline(always)]
-fn at_build<L: Lanes>(lanes: L) -> [L::F; 3] {
-    [lanes.splat(0.0); 3]
+fn find_near<L: Lanes, const IMAGES: bool>(
+    lanes: L,
+    blocks: &Blocks,
+    quads: &[Quad<L>; 2],
+    reach2: L::F,
+    run: RangeInclusive<u32>,
+    [first, second]: [&mut Vec<u32>; 2],
+) {
+    for j in run {
+        if any_within::<L, IMAGES>(lanes, blocks, &quads[0], j as usize, [reach2; VECTORS]) {
+            first.push(j);
+        }
+        if any_within::<L, IMAGES>(lanes, blocks, &quads[1], j as usize, [reach2; VECTORS]) {
+            second.push(j);
+        }
+    }
 }
 
-/// Whether any pair is within its reach (squared).
+/// Whether any pair of a cluster and block `j` is within its reach (squared).
 #[inline(always)]
 fn any_within<L: Lanes, const IMAGES: bool>(
     lanes: L,
+    blocks: &Blocks,
     quad: &Quad<L>,
-    at: [L::F; 3],
-    crossings: [L::F; 3],
+    j: usize,
     reach2: [L::F; VECTORS],
 ) -> bool {
-    let near = |v: usize| {
-        let d = quad.displacement::<IMAGES>(lanes, v, at, crossings);
-        lanes.lt(squared_length(lanes, d), reach2[v])
-    };
-    near(0) | near(1) != 0
+    let at = twice(lanes, &blocks.position[j]);
+    let shifts = if IMAGES { quad.shifts(lanes, blocks, j) } else { [at; VECTORS] };
+    let first = squared_length(lanes, quad.displacement::<IMAGES>(lanes, 0, at, &shifts));
+    let second = squared_length(lanes, quad.displacement::<IMAGES>(lanes, 1, at, &shifts));
+    lanes.lt(first, reach2[0]) | lanes.lt(second, reach2[1]) != 0
 }
 
 /// The box around the particles of block `b`.
@@ -222,17 +235,13 @@ impl lanes::Kernel for Prune<'_> {
             let start = inner.blocks.len() as u32;
             for &j in &outer.blocks[segment.start as usize..segment.end as usize] {
                 let b = j as usize;
-                let at = twice(lanes, &blocks.position[b]);
                 let theirs = lanes.twice(&blocks.budget[b]);
-                let square = |v: usize| {
-                    let reach = lanes.add(ranges[v], theirs);
-                    lanes.mul(reach, reach)
-                };
-                let reach2 = [square(0), square(1)];
+                let reach = [lanes.add(ranges[0], theirs), lanes.add(ranges[1], theirs)];
+                let reach2 = [lanes.mul(reach[0], reach[0]), lanes.mul(reach[1], reach[1])];
                 let near = if with_images || blocks.crossed[b] {
-                    any_within::<L, true>(lanes, &quad, at, twice(lanes, &blocks.crossings[b]), reach2)
+                    any_within::<L, true>(lanes, blocks, &quad, b, reach2)
                 } else {
-                    any_within::<L, false>(lanes, &quad, at, at, reach2)
+                    any_within::<L, false>(lanes, blocks, &quad, b, reach2)
                 };
                 if near {
                     inner.blocks.push(j);

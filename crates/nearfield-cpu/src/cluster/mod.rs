@@ -25,7 +25,7 @@ mod sums;
 mod tests;
 
 use crate::{Grid, Slots, lanes::Isa, physics::Physics};
-use blocks::{Blocks, Fate};
+use blocks::Blocks;
 use list::PairList;
 use nearfield_core::{Truncation, potentials::Potential};
 pub(crate) use sums::Output;
@@ -58,10 +58,11 @@ impl Clusters {
         if !self.valid {
             return false;
         }
-        match self.blocks.refresh(moving.position) {
-            Fate::Outrun => self.valid = false,
-            Fate::Prune => self.prune(moving),
-            Fate::Serves => {}
+        if !self.blocks.refresh(moving.position) {
+            self.valid = self.blocks.plan_motion(moving);
+            if self.valid {
+                self.list.prune(&self.blocks);
+            }
         }
         self.valid
     }
@@ -78,7 +79,9 @@ impl Clusters {
         self.valid = self.list.build(grid, &self.blocks, physics.cutoff() + skin, budget);
         if self.valid {
             self.sums.lay_out(&self.list, self.blocks.len());
-            self.prune(moving);
+            // What is left is nothing where there is no skin: the list is then for one evaluation.
+            self.blocks.plan_motion(moving);
+            self.list.prune(&self.blocks);
         }
         self.valid
     }
@@ -110,11 +113,6 @@ impl Clusters {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         self.blocks.bytes() + self.list.bytes() + self.sums.bytes()
-    }
-
-    fn prune(&mut self, moving: Moving) {
-        self.blocks.plan_motion(moving);
-        self.list.prune(&self.blocks);
     }
 }
 

@@ -27,9 +27,12 @@ const LATER: [[u16; VECTORS]; 2] = {
 #[derive(Clone, Copy)]
 pub(super) struct Quad<L: Lanes> {
     position: [[L::F; 3]; VECTORS],
-    /// The image less the crossings of the cluster's own particles: the crossings of the others are to be added.
-    image: [[L::F; 3]; VECTORS],
-    period: [L::F; 3],
+    block: usize,
+    at: usize,
+    image: [L::F; 3],
+    /// The shift of the image where nobody has crossed.
+    shift: [L::F; 3],
+    crossed: bool,
 }
 
 impl<L: Lanes> Quad<L> {
@@ -37,40 +40,64 @@ impl<L: Lanes> Quad<L> {
     #[inline(always)]
     pub fn new(lanes: L, blocks: &Blocks, cluster: usize, image: [i8; 3]) -> Self {
         let (block, at) = (cluster / 2, cluster % 2 * CLUSTER);
-        let (position, crossings) = (&blocks.position[block].0, &blocks.crossings[block].0);
-        let pair = |from: &[[f32; BLOCK]; 3], axis: usize, v: usize| {
-            lanes.halves(from[axis][at + 2 * v], from[axis][at + 2 * v + 1])
-        };
-        let of = |v: usize| [pair(position, 0, v), pair(position, 1, v), pair(position, 2, v)];
-        let image_of = |v: usize, axis: usize| lanes.sub(lanes.splat(f32::from(image[axis])), pair(crossings, axis, v));
-        let images = |v: usize| [image_of(v, 0), image_of(v, 1), image_of(v, 2)];
+        let position = &blocks.position[block];
+        let [x, y, z] = image.map(f32::from);
+        let [px, py, pz] = blocks.period;
         Self {
-            position: [of(0), of(1)],
-            image: [images(0), images(1)],
-            period: [lanes.splat(blocks.period[0]), lanes.splat(blocks.period[1]), lanes.splat(blocks.period[2])],
+            position: [halves(lanes, position, at), halves(lanes, position, at + 2)],
+            block,
+            at,
+            image: [lanes.splat(x), lanes.splat(y), lanes.splat(z)],
+            shift: [lanes.splat(x * px), lanes.splat(y * py), lanes.splat(z * pz)],
+            crossed: blocks.crossed[block],
         }
     }
 
-    /// `(x_j - x_i) + image * period` of vector `v`. Without `IMAGES` none has an image.
+    /// What is added to displacements to block `j`, for each vector: the image and the crossings of both, in periods.
     #[inline(always)]
-    pub fn displacement<const IMAGES: bool>(
+    pub fn shifts(&self, lanes: L, blocks: &Blocks, j: usize) -> [[L::F; 3]; VECTORS] {
+        if !(self.crossed | blocks.crossed[j]) {
+            return [self.shift; VECTORS];
+        }
+        let theirs = twice(lanes, &blocks.crossings[j]);
+        let mut shifts = [self.shift; VECTORS];
+        for v in 0..VECTORS {
+            let own = halves(lanes, &blocks.crossings[self.block], self.at + 2 * v);
+            for axis in 0..3 {
+                let image = lanes.sub(lanes.add(self.image[axis], theirs[axis]), own[axis]);
+                shifts[v][axis] = lanes.mul(image, lanes.splat(blocks.period[axis]));
+            }
+        }
+        shifts
+    }
+
+    /// `(x_j - x_i) + shift` of vector `v`. Without `SHIFTED` there is no shift.
+    #[inline(always)]
+    pub fn displacement<const SHIFTED: bool>(
         &self,
         lanes: L,
         v: usize,
         j: [L::F; 3],
-        crossings: [L::F; 3],
+        shifts: &[[L::F; 3]; VECTORS],
     ) -> [L::F; 3] {
-        let along = |axis: usize| {
-            let d = lanes.sub(j[axis], self.position[v][axis]);
-            if IMAGES {
-                let image = lanes.add(self.image[v][axis], crossings[axis]);
-                lanes.add(d, lanes.mul(image, self.period[axis]))
-            } else {
-                d
+        let mut d = j;
+        for axis in 0..3 {
+            d[axis] = lanes.sub(j[axis], self.position[v][axis]);
+            if SHIFTED {
+                d[axis] = lanes.add(d[axis], shifts[v][axis]);
             }
-        };
-        [along(0), along(1), along(2)]
+        }
+        d
     }
+}
+
+// No closures below or in kernels: they would be compiled without the instruction set.
+
+/// Element `at` of each array in lanes 0 to 7, the one after it in lanes 8 to 15.
+#[inline(always)]
+fn halves<L: Lanes>(lanes: L, octet: &Octet, at: usize) -> [L::F; 3] {
+    let [x, y, z] = &octet.0;
+    [lanes.halves(x[at], x[at + 1]), lanes.halves(y[at], y[at + 1]), lanes.halves(z[at], z[at + 1])]
 }
 
 /// An array of eight vectors, twice in each vector.

@@ -32,7 +32,10 @@ impl Loaded {
     pub fn prepare_clusters(&mut self) {
         let Self { plan, physics, state, results, upkeep, clusters: stored, report, .. } = self;
         stored.age += 1;
-        if !stored.too_large && stored.clusters.refresh(state.moving_slices(self.dt)) {
+        let start = Instant::now();
+        let serves = !stored.too_large && stored.clusters.refresh(state.moving_slices(self.dt));
+        report.refit_seconds += start.elapsed().as_secs_f64();
+        if serves {
             return;
         }
         let start = Instant::now();

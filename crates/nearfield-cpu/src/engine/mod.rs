@@ -86,7 +86,9 @@ impl Engine for CpuEngine {
     }
 
     fn advance(&mut self, dynamics: &Dynamics, from: u64, steps: u64, quantities: Quantities) -> Result<Totals> {
-        self.loaded()?.advance(dynamics, from, steps, quantities)
+        let loaded = self.loaded()?;
+        // Inside the pool, a thread of which then takes part in each pass instead of waiting outside.
+        rayon::scope(|_| loaded.advance(dynamics, from, steps, quantities))
     }
 
     fn memory_order(&self) -> Result<MemoryOrder> {

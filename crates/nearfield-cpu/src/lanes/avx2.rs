@@ -139,21 +139,20 @@ impl Lanes for V3 {
 
     #[inline(always)]
     fn less(self, a: [__m256; 2], b: [__m256; 2]) -> [__m256; 2] {
-        both(a, b, |a, b| self.avx._mm256_cmp_ps::<_CMP_LT_OQ>(a, b))
+        [self.avx._mm256_cmp_ps::<_CMP_LT_OQ>(a[0], b[0]), self.avx._mm256_cmp_ps::<_CMP_LT_OQ>(a[1], b[1])]
     }
 
     #[inline(always)]
     fn mask(self, bits: u16) -> [__m256; 2] {
         let lanes: __m256i = cast([1u32, 2, 4, 8, 16, 32, 64, 128]);
-        bits.to_le_bytes().map(|bits| {
-            let bits = self.avx._mm256_set1_epi32(i32::from(bits));
-            cast(self.avx2._mm256_cmpeq_epi32(self.avx2._mm256_and_si256(bits, lanes), lanes))
-        })
+        let low = self.avx2._mm256_and_si256(self.avx._mm256_set1_epi32(i32::from(bits)), lanes);
+        let high = self.avx2._mm256_and_si256(self.avx._mm256_set1_epi32(i32::from(bits >> 8)), lanes);
+        [cast(self.avx2._mm256_cmpeq_epi32(low, lanes)), cast(self.avx2._mm256_cmpeq_epi32(high, lanes))]
     }
 
     #[inline(always)]
     fn and(self, a: [__m256; 2], b: [__m256; 2]) -> [__m256; 2] {
-        both(a, b, |a, b| self.avx._mm256_and_ps(a, b))
+        [self.avx._mm256_and_ps(a[0], b[0]), self.avx._mm256_and_ps(a[1], b[1])]
     }
 
     #[inline(always)]
@@ -163,23 +162,22 @@ impl Lanes for V3 {
 
     #[inline(always)]
     fn min(self, a: [__m256; 2], b: [__m256; 2]) -> [__m256; 2] {
-        both(a, b, |a, b| self.avx._mm256_min_ps(a, b))
+        [self.avx._mm256_min_ps(a[0], b[0]), self.avx._mm256_min_ps(a[1], b[1])]
     }
 
     #[inline(always)]
     fn sqrt(self, a: [__m256; 2]) -> [__m256; 2] {
-        a.map(|a| self.avx._mm256_sqrt_ps(a))
+        [self.avx._mm256_sqrt_ps(a[0]), self.avx._mm256_sqrt_ps(a[1])]
     }
 
     #[inline(always)]
     fn reciprocal(self, mask: [__m256; 2], a: [__m256; 2]) -> [__m256; 2] {
         let two = self.avx._mm256_set1_ps(2.0);
-        let inverse = a.map(|a| {
-            let estimate = self.avx._mm256_rcp_ps(a);
-            self.avx._mm256_mul_ps(estimate, self.fma._mm256_fnmadd_ps(a, estimate, two))
-        });
+        let estimate = [self.avx._mm256_rcp_ps(a[0]), self.avx._mm256_rcp_ps(a[1])];
+        let low = self.avx._mm256_mul_ps(estimate[0], self.fma._mm256_fnmadd_ps(a[0], estimate[0], two));
+        let high = self.avx._mm256_mul_ps(estimate[1], self.fma._mm256_fnmadd_ps(a[1], estimate[1], two));
         // Masked last: infinity times its estimate, zero, is NaN.
-        self.and(mask, inverse)
+        self.and(mask, [low, high])
     }
 
     #[inline(always)]
@@ -198,17 +196,27 @@ impl Lanes for V3 {
     }
 
     #[inline(always)]
-    fn sum_halves(self, a: [__m256; 2]) -> [f32; 2] {
-        a.map(|a| {
-            let a = self.avx._mm256_add_ps(a, self.avx._mm256_permute2f128_ps::<1>(a, a));
-            let a = self.avx._mm256_add_ps(a, self.avx._mm256_permute_ps::<0b01_00_11_10>(a));
-            let a = self.avx._mm256_add_ps(a, self.avx._mm256_permute_ps::<0b10_11_00_01>(a));
-            self.avx._mm256_cvtss_f32(a)
-        })
+    fn sum_halves(self, a: [__m256; 2], b: [__m256; 2]) -> [f32; 4] {
+        let v = self.avx;
+        let low = v._mm256_add_ps(
+            v._mm256_shuffle_ps::<0b01_00_01_00>(a[0], b[0]),
+            v._mm256_shuffle_ps::<0b11_10_11_10>(a[0], b[0]),
+        );
+        let high = v._mm256_add_ps(
+            v._mm256_shuffle_ps::<0b01_00_01_00>(a[1], b[1]),
+            v._mm256_shuffle_ps::<0b11_10_11_10>(a[1], b[1]),
+        );
+        let low = v._mm256_add_ps(low, v._mm256_permute_ps::<0b10_11_00_01>(low));
+        let high = v._mm256_add_ps(high, v._mm256_permute_ps::<0b10_11_00_01>(high));
+        let halves =
+            v._mm256_add_ps(v._mm256_permute2f128_ps::<0x20>(low, high), v._mm256_permute2f128_ps::<0x31>(low, high));
+        let halves: [f32; 8] = cast(halves);
+        [halves[0], halves[4], halves[2], halves[6]]
     }
 
     #[inline(always)]
     fn look_up(self, low: &[f32; 8], high: &[f32; 8], index: &[u32; 8]) -> [__m256; 2] {
-        [low, high].map(|row| self.avx2._mm256_permutevar8x32_ps(cast(*row), cast(*index)))
+        let index = cast(*index);
+        [self.avx2._mm256_permutevar8x32_ps(cast(*low), index), self.avx2._mm256_permutevar8x32_ps(cast(*high), index)]
     }
 }

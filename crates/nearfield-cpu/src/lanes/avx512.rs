@@ -153,13 +153,15 @@ impl Lanes for V4 {
     }
 
     #[inline(always)]
-    fn sum_halves(self, a: __m512) -> [f32; 2] {
+    fn sum_halves(self, a: __m512, b: __m512) -> [f32; 4] {
         let f = self.avx512f;
-        let a = f._mm512_add_ps(a, f._mm512_shuffle_f32x4::<0b10_11_00_01>(a, a));
-        let a = f._mm512_add_ps(a, f._mm512_permute_ps::<0b01_00_11_10>(a));
-        let a = f._mm512_add_ps(a, f._mm512_permute_ps::<0b10_11_00_01>(a));
-        let high: __m256 = cast(f._mm512_extractf64x4_pd::<1>(cast(a)));
-        [self.avx._mm256_cvtss_f32(f._mm512_castps512_ps256(a)), self.avx._mm256_cvtss_f32(high)]
+        // In each quarter: pairs of a, pairs of b; then their sums, each twice.
+        let pairs =
+            f._mm512_add_ps(f._mm512_shuffle_ps::<0b01_00_01_00>(a, b), f._mm512_shuffle_ps::<0b11_10_11_10>(a, b));
+        let quarters = f._mm512_add_ps(pairs, f._mm512_permute_ps::<0b10_11_00_01>(pairs));
+        let halves = f._mm512_add_ps(quarters, f._mm512_shuffle_f32x4::<0b10_11_00_01>(quarters, quarters));
+        let first = cast([0u32, 8, 2, 10, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
+        cast(f._mm512_castps512_ps128(f._mm512_permutexvar_ps(first, halves)))
     }
 
     #[inline(always)]

@@ -149,13 +149,13 @@ impl Lanes for Portable {
     }
 
     #[inline(always)]
-    fn sum_halves(self, a: [f32; 16]) -> [f32; 2] {
+    fn sum_halves(self, a: [f32; 16], b: [f32; 16]) -> [f32; 4] {
         // In the order of the vector units, so that sums are the same.
-        let sum = |o: usize| {
-            let [p, q, r, s]: [f32; 4] = from_fn(|k| a[o + k] + a[o + k + 4]);
-            (p + r) + (q + s)
+        let sum = |a: &[f32; 16], o: usize| {
+            let quarter = |o: usize| (a[o] + a[o + 2]) + (a[o + 1] + a[o + 3]);
+            quarter(o) + quarter(o + 4)
         };
-        [sum(0), sum(8)]
+        [sum(&a, 0), sum(&a, 8), sum(&b, 0), sum(&b, 8)]
     }
 
     #[inline(always)]
