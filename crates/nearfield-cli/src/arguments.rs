@@ -1,5 +1,7 @@
 //! What can be typed.
 
+pub mod render;
+
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use nearfield::{
     Boundary, Images, Method, Order, Truncation,
@@ -30,6 +32,9 @@ pub enum Command {
     /// Write initial conditions to a file.
     #[command(after_help = GENERATE_HELP)]
     Generate(GenerateArguments),
+    /// Draw a picture of a configuration, of its neighbourhoods or of a trajectory.
+    #[command(after_help = render::HELP)]
+    Render(render::RenderArguments),
     /// Say what is usable on this machine, and why the rest is not.
     Devices(Listing),
     /// List every method, what it does and what it supports.

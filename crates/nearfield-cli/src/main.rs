@@ -16,6 +16,7 @@ fn main() -> ExitCode {
         Command::Forces(forces) => commands::forces::run(&forces),
         Command::Neighbors(neighbors) => commands::neighbors::run(&neighbors),
         Command::Generate(generate) => commands::generate::run(&generate),
+        Command::Render(render) => commands::render::run(&render),
         Command::Devices(listing) => commands::devices::run(listing.json),
         Command::Methods(listing) => commands::methods::run(listing.json),
     };

@@ -1,4 +1,4 @@
-//! The progress bar of a run, on stderr when that is a terminal.
+//! Progress bars, on stderr when that is a terminal.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use nearfield::Progress;
@@ -39,5 +39,29 @@ impl RunBar {
     /// Removes the bar.
     pub fn clear(&self) {
         self.bar.finish_and_clear();
+    }
+}
+
+/// A bar of the rows of a picture.
+pub struct PictureBar(ProgressBar);
+
+impl PictureBar {
+    /// A bar of picture `number`, counted from 1.
+    pub fn new(number: usize, n_rows: u32) -> Self {
+        let bar = ProgressBar::with_draw_target(Some(n_rows.into()), ProgressDrawTarget::stderr());
+        let template = "{bar:32.cyan/black} {percent}% of {msg}  {eta} left";
+        bar.set_style(ProgressStyle::with_template(template).expect("the template is valid"));
+        bar.set_message(format!("picture {number}"));
+        Self(bar)
+    }
+
+    /// Another row is drawn; from any thread.
+    pub fn row_done(&self) {
+        self.0.inc(1);
+    }
+
+    /// Removes the bar.
+    pub fn clear(&self) {
+        self.0.finish_and_clear();
     }
 }

@@ -84,6 +84,16 @@ pub fn all() -> Vec<Case> {
             add(&format!("lattice of {spacing}, cutoff {cutoff}"), lattice(6, spacing, cutoff, [Periodic; 3]));
         }
     }
+    for squared in [1.0f32, 2.0, 3.0, 6.0] {
+        let cutoff = squared.sqrt();
+        for (cutoff, side) in [(cutoff.next_down(), "below"), (cutoff.next_up(), "above")] {
+            let system = lattice(6, 1.0, cutoff, [Periodic; 3]);
+            add(&format!("lattice, cutoff just {side} the root of {squared}"), system);
+        }
+    }
+    add("offsets on diagonals", diagonals([Periodic; 3]));
+    add("offsets on diagonals, open", diagonals([Open; 3]));
+    add("far outliers of an open box", outliers());
     add("lattice between walls", lattice(6, 1.0, 2.0, [Wall; 3]));
     add("coincident triples", coincident([Periodic; 3]));
     add("coincident triples, open", coincident([Open; 3]));
@@ -208,6 +218,44 @@ pub fn lattice(side: usize, spacing: f32, cutoff: f32, boundary: [Boundary; 3]) 
     let mut system = soft(cube(side as f32 * spacing, boundary), points, Radii::Uniform(cutoff));
     system.interaction.types[0].sigma = spacing;
     system
+}
+
+/// Around two places, one of them a corner of the box: neighbours in all directions whose components are equal or zero,
+/// at the cutoff and one rounding to both sides of it.
+fn diagonals(boundary: [Boundary; 3]) -> System {
+    let cutoff = 1.5f32;
+    let mut points = Vec::new();
+    for centre in [[0.0f32; 3], [8.0, 4.0, 11.3]] {
+        points.push(centre);
+        for direction in (0..27).map(|k| [k % 3, k / 3 % 3, k / 9].map(|c| c as f32 - 1.0)) {
+            let length = direction.iter().map(|c| c * c).sum::<f32>().sqrt();
+            if length == 0.0 {
+                continue;
+            }
+            let step = cutoff / length;
+            for step in [step.next_down(), step, step.next_up()] {
+                points.push(std::array::from_fn(|a| centre[a] + step * direction[a]));
+            }
+        }
+    }
+    soft(cube(16.0, boundary), points, Radii::Uniform(cutoff))
+}
+
+/// Pairs so far outside of an open box that the cutoff is lost in the rounding of their coordinates.
+fn outliers() -> System {
+    let sim_box = cube(10.0, [Open; 3]);
+    let mut points = uniform(100, &sim_box, 53);
+    for far in [30.0f32, -3e3, 2e8, -1e30] {
+        points.extend([
+            [far, 5.0, 5.0],
+            [far, 5.0, 5.5],
+            [far.next_up(), 5.0, 5.0],
+            [far; 3],
+            [far; 3],
+            [5.0, far, far],
+        ]);
+    }
+    soft(sim_box, points, Radii::Uniform(1.5))
 }
 
 fn coincident(boundary: [Boundary; 3]) -> System {

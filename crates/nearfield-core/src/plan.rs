@@ -54,6 +54,10 @@ named_enum! {
         RtPerse = "rt-perse",
         /// BVH over boxes, point ray, gather. Custom AABB of paper B; one radius only.
         RtBoxes = "rt-boxes",
+        /// BVH over spheres, three axis rays, gather. Spheres of paper B; one radius only.
+        RtSpheres = "rt-spheres",
+        /// BVH over squares, four edge rays, gather. Double squares of paper B; one radius only.
+        RtSquares = "rt-squares",
         /// Grid of clusters, cluster pairs, list. The fastest for most systems.
         Cluster = "cluster",
     }
@@ -62,7 +66,7 @@ named_enum! {
 impl Method {
     /// Whether it works on a BVH, so that images and maintenance mean something.
     pub fn uses_bvh(self) -> bool {
-        matches!(self, Self::RtList | Self::RtForces | Self::RtPerse | Self::RtBoxes)
+        !matches!(self, Self::Brute | Self::Cell | Self::Cluster)
     }
 
     /// Whether it stores a neighbour list, so that a skin means something.
@@ -73,7 +77,7 @@ impl Method {
     /// Whether particles may differ in search radius. A point ray from i finds the j whose box holds i, that is
     /// d < r_j; a gather that needs max(r_i, r_j) therefore misses pairs unless the radii are equal.
     pub fn supports_variable_radii(self) -> bool {
-        !matches!(self, Self::RtPerse | Self::RtBoxes | Self::Cluster)
+        !matches!(self, Self::RtPerse | Self::RtBoxes | Self::RtSpheres | Self::RtSquares)
     }
 }
 

@@ -23,7 +23,7 @@ mod structure;
 mod testing;
 
 pub use brute::Brute;
-pub use bvh::{Bvh, Refit};
+pub use bvh::{Bvh, Probe, Ray, Refit};
 pub use engine::CpuEngine;
 pub use grid::Grid;
 pub use list::{ListBuilder, Row, Rows, neighbor_list};

@@ -5,7 +5,7 @@
 //! that of a CUDA stream, except where they say that they wait.
 
 use nearfield_core::Result;
-use nearfield_kernels::{Kernel, Layout, Ptr, RayProgram};
+use nearfield_kernels::{Float4, Kernel, Layout, Primitive, Ptr, RayProgram};
 
 /// A device, or a stand-in for one.
 pub trait Gpu: Send + Sync {
@@ -155,7 +155,26 @@ pub trait Mark: Send {
 /// An axis-aligned box as acceleration structures take it: six floats, low corner then high corner.
 pub type Aabb = [f32; 6];
 
-/// Ray tracing of infinitesimal rays against boxes.
+/// Three vertices.
+pub type Triangle = [[f32; 3]; 3];
+
+/// What an acceleration structure is over, in device memory.
+#[derive(Clone, Copy, Debug)]
+pub enum Bodies {
+    /// Boxes, 8-aligned.
+    Boxes(Ptr<Aabb>),
+    /// Spheres.
+    Spheres {
+        /// Their centres, 16-aligned, whose w means nothing.
+        center: Ptr<Float4>,
+        /// The radius of all.
+        radius: Ptr<f32>,
+    },
+    /// Triangles.
+    Triangles(Ptr<Triangle>),
+}
+
+/// Ray tracing against boxes, spheres and triangles.
 pub trait RayTracing {
     /// What traces, for reports.
     fn describe(&self) -> String;
@@ -181,10 +200,12 @@ pub trait RayTracing {
 pub struct Trace<'a> {
     /// Module of the programs.
     pub module: &'static str,
+    /// What rays are traced against.
+    pub primitive: Primitive,
     /// Ray generation, without prefix.
     pub raygen: &'static str,
-    /// Intersection, without prefix.
-    pub intersection: &'static str,
+    /// Intersection for boxes, else any-hit, without prefix.
+    pub hit: &'static str,
     /// Number of rays.
     pub rays: u32,
     /// The launch parameters.
@@ -209,8 +230,9 @@ pub unsafe fn trace<A: Layout>(
     }
     let trace = Trace {
         module: program.module,
+        primitive: program.primitive,
         raygen: program.raygen,
-        intersection: program.intersection,
+        hit: program.hit,
         rays,
         parameters: bytemuck::bytes_of(parameters),
     };
@@ -220,29 +242,29 @@ pub unsafe fn trace<A: Layout>(
 
 /// A bounding-volume hierarchy in device memory.
 pub trait AccelerationStructure: Send {
-    /// Builds over boxes.
+    /// Builds over `n` bodies.
     ///
     /// # Safety
-    /// `boxes` is the address of `n` boxes, 8-aligned, until the work is done.
+    /// The addresses are of `n` bodies until the work is done.
     ///
     /// # Errors
     /// [`nearfield_core::Error::OutOfMemory`], [`nearfield_core::Error::Device`].
-    unsafe fn build_boxes(&mut self, boxes: Ptr<Aabb>, n: u32) -> Result<()>;
+    unsafe fn build(&mut self, bodies: Bodies, n: u32) -> Result<()>;
 
-    /// Fits the hierarchy of the last build to boxes that have changed, `n` as then.
+    /// Fits the hierarchy of the last build to bodies that have changed, `n` of the same kind as then.
     ///
     /// # Safety
-    /// As [`AccelerationStructure::build_boxes`].
+    /// As [`AccelerationStructure::build`].
     ///
     /// # Errors
-    /// As [`AccelerationStructure::build_boxes`].
-    unsafe fn refit_boxes(&mut self, boxes: Ptr<Aabb>, n: u32) -> Result<()>;
+    /// As [`AccelerationStructure::build`].
+    unsafe fn refit(&mut self, bodies: Bodies, n: u32) -> Result<()>;
 
     /// Builds over translated instances of another structure, which must be built or refitted before and stay where it
     /// is. The number of an instance is its place in `translations`.
     ///
     /// # Errors
-    /// As [`AccelerationStructure::build_boxes`].
+    /// As [`AccelerationStructure::build`].
     fn build_instances(&mut self, of: &dyn AccelerationStructure, translations: &[[f32; 3]]) -> Result<()>;
 
     /// Handle that rays are traced against; zero before the first build.

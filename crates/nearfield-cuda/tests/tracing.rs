@@ -21,7 +21,7 @@ fn run(plan: Plan) -> Report {
 
 /// A fifth of the cutoff is 25 steps of the fastest particles, 50 of most.
 fn ghosts_serve_many_steps_and_are_drawn_anew_when_outrun() {
-    for method in [Method::RtBoxes, Method::RtForces, Method::RtPerse] {
+    for method in [Method::RtBoxes, Method::RtSpheres, Method::RtSquares, Method::RtForces, Method::RtPerse] {
         let report = run(Plan { images: Images::Ghosts, ..Plan::new(method) });
         assert_eq!(report.builds, 1 + report.forced_builds, "{method}: {report:?}");
         assert!((1..=STEPS / 10).contains(&report.forced_builds), "{method}: {report:?}");
@@ -29,9 +29,12 @@ fn ghosts_serve_many_steps_and_are_drawn_anew_when_outrun() {
 }
 
 fn without_ghosts_refits_are_never_refused() {
-    for images in [Images::Gamma, Images::Instances] {
-        let report = run(Plan { images, ..Plan::new(Method::RtBoxes) });
-        assert_eq!((report.builds, report.refits, report.forced_builds), (1, STEPS, 0), "{images}: {report:?}");
+    for method in [Method::RtBoxes, Method::RtSpheres, Method::RtSquares] {
+        for images in [Images::Gamma, Images::Instances] {
+            let report = run(Plan { images, ..Plan::new(method) });
+            let updates = (report.builds, report.refits, report.forced_builds);
+            assert_eq!(updates, (1, STEPS, 0), "{method}, {images}: {report:?}");
+        }
     }
 }
 

@@ -54,15 +54,15 @@ extern "C" bool nearfield_emulator_launch(const char* module, const char* name, 
     return Machine::launch_here({name, blocks, threads, true, kernel->run, copy}, error, capacity);
 }
 
-extern "C" bool nearfield_emulator_trace(const char* module, const char* raygen, const char* intersection,
+extern "C" bool nearfield_emulator_trace(const char* module, const char* raygen, const char* hit, bool anyhit,
                                          unsigned rays, const void* parameters, size_t size, Traverse traverse,
                                          const void* scene, char* error, size_t capacity) {
     const Entry* generation = find(module, Entry::RAYGEN, raygen);
-    const Entry* program = find(module, Entry::INTERSECTION, intersection);
+    const Entry* program = find(module, anyhit ? Entry::ANYHIT : Entry::INTERSECTION, hit);
     const Entry* params = find(module, Entry::PARAMETERS, "params");
     if (!generation || !program || !params) {
-        snprintf(error, capacity, "module %s lacks its parameters, ray generation %s or intersection %s", module,
-                 raygen, intersection);
+        snprintf(error, capacity, "module %s lacks its parameters, ray generation %s or %s %s", module, raygen,
+                 anyhit ? "any-hit" : "intersection", hit);
         return false;
     }
     if (size != params->size) {
@@ -70,7 +70,7 @@ extern "C" bool nearfield_emulator_trace(const char* module, const char* raygen,
         return false;
     }
     memcpy(params->address(), parameters, size);
-    ray = {traverse, scene, program->run, rays, nullptr, 0, 0};
+    ray = {traverse, scene, program->run, rays, nullptr, 0, 0, 0.0f};
     const auto thread = [](const void* run) {
         if (rt::ray_index() < ray.count) (*static_cast<void (*const*)(const void*)>(run))(nullptr);
     };

@@ -7,7 +7,7 @@
 namespace emulator {
 
 struct Entry {
-    enum Kind { KERNEL, RAYGEN, INTERSECTION, PARAMETERS };
+    enum Kind { KERNEL, RAYGEN, INTERSECTION, ANYHIT, PARAMETERS };
     Kind kind;
     const char* name;
     // Of its arguments.

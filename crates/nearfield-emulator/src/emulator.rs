@@ -1,6 +1,12 @@
 //! The emulated device.
 
-use crate::{available, clock::Moment, launch, memory::Heap, tracing::Acceleration, tracing::Structures};
+use crate::{
+    available,
+    clock::Moment,
+    launch,
+    memory::Heap,
+    tracing::{Acceleration, Seen, Structures},
+};
 use nearfield_core::{Error, Result};
 use nearfield_cuda::gpu::{AccelerationStructure, Gpu, Launch, Mark, Memory, RayTracing, Trace};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -135,6 +141,6 @@ impl RayTracing for Emulator {
     unsafe fn trace(&self, trace: Trace) -> Result<()> {
         let state = self.shared.lock();
         // SAFETY: as for launch.
-        unsafe { launch::trace(trace, &state.structures) }
+        unsafe { launch::trace(trace, &Seen { structures: &state.structures, by: trace.primitive }) }
     }
 }

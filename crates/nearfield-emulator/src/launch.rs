@@ -1,18 +1,31 @@
 //! The compiled kernels, called by name: the only foreign functions of this crate.
 
-use crate::tree::{Point, Visit};
 use nearfield_core::{Error, Result};
 use nearfield_cuda::gpu::{Launch, Trace};
+use nearfield_kernels::Primitive;
 use std::ffi::{CStr, CString, c_char, c_void};
 
-/// Visits the boxes around a point; why not, where that fails.
+/// A ray, or what there is of it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct Segment {
+    pub origin: [f32; 3],
+    /// Of length 1.
+    pub direction: [f32; 3],
+    pub length: f32,
+}
+
+/// Called with the numbers of a primitive and of its instance, and how far along the ray it is met.
+pub type Visit = unsafe extern "C" fn(primitive: u32, instance: u32, distance: f32);
+
+/// Visits what a ray meets; why not, where that fails.
 pub type Traverse =
-    unsafe extern "C" fn(scene: *const c_void, handle: u64, x: f32, y: f32, z: f32, visit: Visit) -> *const c_char;
+    unsafe extern "C" fn(scene: *const c_void, handle: u64, segment: *const Segment, visit: Visit) -> *const c_char;
 
 /// What rays are traced against.
 pub trait Scene {
-    /// Calls `visit` for each box of the structure behind `handle` that holds the point.
-    fn traverse(&self, handle: u64, point: Point, visit: Visit) -> std::result::Result<(), &'static CStr>;
+    /// Calls `visit` for each primitive of the structure behind `handle` that the ray meets.
+    fn traverse(&self, handle: u64, segment: &Segment, visit: Visit) -> std::result::Result<(), &'static CStr>;
 }
 
 /// Bytes for the text of an error.
@@ -47,15 +60,16 @@ pub unsafe fn launch(launch: Launch) -> Result<()> {
 /// # Safety
 /// As [`launch`].
 pub unsafe fn trace<S: Scene>(trace: Trace, scene: &S) -> Result<()> {
-    let (module, raygen, intersection) = (text(trace.module)?, text(trace.raygen)?, text(trace.intersection)?);
-    let Trace { rays, parameters, .. } = trace;
+    let (module, raygen, hit) = (text(trace.module)?, text(trace.raygen)?, text(trace.hit)?);
+    let Trace { rays, parameters, primitive, .. } = trace;
     call(|error, capacity| {
         // SAFETY: as in `launch`; the scene outlives the call and is of the type that `traverse` takes it for.
         unsafe {
             ffi::nearfield_emulator_trace(
                 module.as_ptr(),
                 raygen.as_ptr(),
-                intersection.as_ptr(),
+                hit.as_ptr(),
+                primitive != Primitive::Box,
                 rays,
                 parameters.as_ptr().cast(),
                 parameters.len(),
@@ -69,18 +83,16 @@ pub unsafe fn trace<S: Scene>(trace: Trace, scene: &S) -> Result<()> {
 }
 
 /// # Safety
-/// `scene` is of an `S`.
+/// `scene` is of an `S`, and `segment` is valid.
 unsafe extern "C" fn traverse<S: Scene>(
     scene: *const c_void,
     handle: u64,
-    x: f32,
-    y: f32,
-    z: f32,
+    segment: *const Segment,
     visit: Visit,
 ) -> *const c_char {
     // SAFETY: the caller's promise.
-    let scene = unsafe { &*scene.cast::<S>() };
-    match scene.traverse(handle, [x, y, z], visit) {
+    let (scene, segment) = unsafe { (&*scene.cast::<S>(), &*segment) };
+    match scene.traverse(handle, segment, visit) {
         Ok(()) => std::ptr::null(),
         Err(text) => text.as_ptr(),
     }
@@ -118,7 +130,8 @@ mod ffi {
         pub fn nearfield_emulator_trace(
             module: *const c_char,
             raygen: *const c_char,
-            intersection: *const c_char,
+            hit: *const c_char,
+            anyhit: bool,
             rays: u32,
             parameters: *const c_void,
             size: usize,
@@ -153,6 +166,7 @@ mod ffi {
         _: *const c_char,
         _: *const c_char,
         _: *const c_char,
+        _: bool,
         _: u32,
         _: *const c_void,
         _: usize,

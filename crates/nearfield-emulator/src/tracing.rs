@@ -2,16 +2,16 @@
 
 use crate::{
     emulator::{Shared, State},
-    launch::Scene,
+    launch::{Scene, Segment, Visit},
     memory::Heap,
-    tree::{Point, Tree, Visit},
+    primitives::{Primitives, Shapes},
 };
 use nearfield_core::{Error, Result};
-use nearfield_cuda::gpu::{Aabb, AccelerationStructure};
-use nearfield_kernels::Ptr;
+use nearfield_cuda::gpu::{AccelerationStructure, Bodies};
+use nearfield_kernels::{Primitive, Ptr};
 use std::{collections::HashMap, ffi::CStr, slice, sync::Arc};
 
-/// Bytes that a structure takes for a box or an instance; hierarchies of GPUs take about as much.
+/// Bytes that a structure takes for a primitive or an instance; hierarchies of GPUs take about as much.
 const BYTES_EACH: u64 = 64;
 
 /// All structures of a device that have been built, by handle.
@@ -23,8 +23,8 @@ pub struct Structures {
 }
 
 enum Structure {
-    Boxes {
-        tree: Tree,
+    Bodies {
+        primitives: Primitives,
         /// Counts the refits.
         version: u64,
     },
@@ -32,7 +32,7 @@ enum Structure {
         of: u64,
         /// Of the instanced structure at the build.
         version: u64,
-        translations: Vec<Point>,
+        translations: Vec<[f32; 3]>,
     },
 }
 
@@ -46,26 +46,40 @@ impl Structures {
     }
 }
 
-impl Scene for Structures {
-    fn traverse(&self, handle: u64, point: Point, visit: Visit) -> std::result::Result<(), &'static CStr> {
+/// The structures as a program sees them that is for primitives of one kind.
+pub struct Seen<'a> {
+    pub structures: &'a Structures,
+    pub by: Primitive,
+}
+
+impl Scene for Seen<'_> {
+    fn traverse(&self, handle: u64, ray: &Segment, visit: Visit) -> std::result::Result<(), &'static CStr> {
         // SAFETY: the programs behind `visit` are called by the launch that traverses.
-        let found = |primitive, instance| unsafe { visit(primitive, instance) };
-        match self.built.get(&handle).ok_or(c"no acceleration structure has the handle it traces against")? {
-            Structure::Boxes { tree, .. } => tree.boxes_around(point, |primitive| found(primitive, 0)),
+        let found = |primitive, instance, distance| unsafe { visit(primitive, instance, distance) };
+        let built = &self.structures.built;
+        let meet = |primitives: &Primitives, ray: &Segment, instance: u32| {
+            if !primitives.are(self.by) {
+                return Err(c"the program is for primitives of another kind than the structure holds");
+            }
+            primitives.meet(ray, |primitive, distance| found(primitive, instance, distance));
+            Ok(())
+        };
+        match built.get(&handle).ok_or(c"no acceleration structure has the handle it traces against")? {
+            Structure::Bodies { primitives, .. } => meet(primitives, ray, 0),
             Structure::Instances { of, version, translations } => {
-                let Some(Structure::Boxes { tree, version: present }) = self.built.get(of) else {
+                let Some(Structure::Bodies { primitives, version: present }) = built.get(of) else {
                     return Err(c"the structure behind its instances was rebuilt or dropped since they were built");
                 };
                 if version != present {
                     return Err(c"the structure behind its instances was refitted since they were built");
                 }
                 for (instance, translation) in (0..).zip(translations) {
-                    let local = [0, 1, 2].map(|axis| point[axis] - translation[axis]);
-                    tree.boxes_around(local, |primitive| found(primitive, instance));
+                    let origin = [0, 1, 2].map(|axis| ray.origin[axis] - translation[axis]);
+                    meet(primitives, &Segment { origin, ..*ray }, instance)?;
                 }
+                Ok(())
             }
         }
-        Ok(())
     }
 }
 
@@ -82,7 +96,7 @@ impl Acceleration {
         Self { shared, handle: 0, bytes: 0 }
     }
 
-    /// Drops what is there and makes room for `n` boxes or instances.
+    /// Drops what is there and makes room for `n` primitives or instances.
     fn clear(&mut self, state: &mut State, n: usize) -> Result<()> {
         state.structures.built.remove(&self.handle);
         state.heap.unreserve(self.bytes);
@@ -95,31 +109,31 @@ impl Acceleration {
 }
 
 impl AccelerationStructure for Acceleration {
-    unsafe fn build_boxes(&mut self, boxes: Ptr<Aabb>, n: u32) -> Result<()> {
+    unsafe fn build(&mut self, bodies: Bodies, n: u32) -> Result<()> {
         let shared = self.shared.clone();
         let mut state = shared.lock();
         self.clear(&mut state, n as usize)?;
-        let tree = Tree::new(read(&state.heap, "build", boxes, n)?);
-        self.handle = state.structures.insert(Structure::Boxes { tree, version: 0 });
+        let primitives = Primitives::new(shapes(&state.heap, "build", bodies, n)?);
+        self.handle = state.structures.insert(Structure::Bodies { primitives, version: 0 });
         Ok(())
     }
 
-    unsafe fn refit_boxes(&mut self, boxes: Ptr<Aabb>, n: u32) -> Result<()> {
+    unsafe fn refit(&mut self, bodies: Bodies, n: u32) -> Result<()> {
         let mut guard = self.shared.lock();
         let state = &mut *guard;
-        let boxes = read(&state.heap, "refit", boxes, n)?;
+        let shapes = shapes(&state.heap, "refit", bodies, n)?;
         match state.structures.built.get_mut(&self.handle) {
-            Some(Structure::Boxes { tree, version }) if tree.len() == boxes.len() => {
-                tree.refit(boxes);
+            Some(Structure::Bodies { primitives, version }) => {
+                let built = primitives.shapes();
+                if (built.len(), built.name()) != (shapes.len(), shapes.name()) {
+                    let (kind, before) = (shapes.name(), format!("{} {}", built.len(), built.name()));
+                    return Err(Error::Device(format!("refit of {n} {kind} to a structure of {before}")));
+                }
+                primitives.refit(shapes);
                 *version += 1;
                 Ok(())
             }
-            Some(Structure::Boxes { tree, .. }) => {
-                Err(Error::Device(format!("refit of {} boxes to a structure of {}", n, tree.len())))
-            }
-            Some(Structure::Instances { .. }) => {
-                Err(Error::Device("refit of boxes to a structure of instances".into()))
-            }
+            Some(Structure::Instances { .. }) => Err(Error::Device("refit of a structure of instances".into())),
             None => Err(Error::Device("refit of a structure that was not built".into())),
         }
     }
@@ -128,8 +142,8 @@ impl AccelerationStructure for Acceleration {
         let of = of.handle();
         let shared = self.shared.clone();
         let mut state = shared.lock();
-        let Some(&Structure::Boxes { version, .. }) = state.structures.built.get(&of) else {
-            return Err(Error::Device("instances of a structure that was not built over boxes".into()));
+        let Some(&Structure::Bodies { version, .. }) = state.structures.built.get(&of) else {
+            return Err(Error::Device("instances of a structure that was not built over primitives".into()));
         };
         self.clear(&mut state, translations.len())?;
         let instances = Structure::Instances { of, version, translations: translations.to_vec() };
@@ -154,15 +168,27 @@ impl Drop for Acceleration {
     }
 }
 
-/// The boxes in device memory.
-fn read<'a>(heap: &'a Heap, action: &str, boxes: Ptr<Aabb>, n: u32) -> Result<&'a [Aabb]> {
+/// The primitives in device memory.
+fn shapes(heap: &Heap, action: &str, bodies: Bodies, n: u32) -> Result<Shapes> {
+    Ok(match bodies {
+        Bodies::Boxes(boxes) => Shapes::Boxes(read(heap, action, boxes, n, 8)?.to_vec()),
+        Bodies::Spheres { center, radius } => Shapes::Spheres {
+            centers: read(heap, action, center, n, 16)?.iter().map(|c| [c.x, c.y, c.z]).collect(),
+            radius: read(heap, action, radius, 1, 4)?[0],
+        },
+        Bodies::Triangles(triangles) => Shapes::Triangles(read(heap, action, triangles, n, 4)?.to_vec()),
+    })
+}
+
+/// An array in device memory.
+fn read<'a, T>(heap: &'a Heap, action: &str, array: Ptr<T>, n: u32, alignment: u64) -> Result<&'a [T]> {
     if n == 0 {
         return Ok(&[]);
     }
-    if !boxes.address().is_multiple_of(8) {
-        return Err(Error::Device(format!("{action}: boxes at {boxes:?} are not aligned to 8 bytes")));
+    if !array.address().is_multiple_of(alignment) {
+        return Err(Error::Device(format!("{action}: bodies at {array:?} are not aligned to {alignment} bytes")));
     }
-    let start = heap.range(action, boxes.address(), n as usize * size_of::<Aabb>())?;
-    // SAFETY: the range is within a buffer, aligned, and not written while the state is locked.
+    let start = heap.range(action, array.address(), n as usize * size_of::<T>())?;
+    // SAFETY: the range is within a buffer, aligned, holds plain numbers and is not written while the state is locked.
     Ok(unsafe { slice::from_raw_parts(start.cast().as_ptr(), n as usize) })
 }

@@ -1,12 +1,6 @@
-//! A bounding-volume hierarchy over boxes, for the boxes around a point.
+//! A bounding-volume hierarchy over boxes.
 
 use nearfield_cuda::gpu::Aabb;
-
-/// A place.
-pub type Point = [f32; 3];
-
-/// Called with the numbers of a box and of its instance.
-pub type Visit = unsafe extern "C" fn(primitive: u32, instance: u32);
 
 /// Most boxes of a leaf.
 const LEAF: usize = 4;
@@ -44,11 +38,6 @@ impl Tree {
         tree
     }
 
-    /// Number of boxes.
-    pub fn len(&self) -> usize {
-        self.order.len()
-    }
-
     /// Fits the tree to as many boxes as it has.
     pub fn refit(&mut self, boxes: &[Aabb]) {
         self.boxes.clear();
@@ -63,20 +52,21 @@ impl Tree {
         }
     }
 
-    /// Calls `found` with the number of each box that holds the point, bounds included. One with a NaN holds nothing.
-    pub fn boxes_around(&self, point: Point, mut found: impl FnMut(u32)) {
+    /// Calls `found` with the number of each box that shares a point with another, bounds included. One with a NaN has
+    /// none.
+    pub fn overlapping(&self, other: &Aabb, mut found: impl FnMut(u32)) {
         let mut stack = [0; MAX_DEPTH];
         let mut height = 1;
         while height > 0 {
             height -= 1;
             let i = stack[height];
             let Node { ref bounds, first, count, second } = self.nodes[i];
-            if !holds(bounds, point) {
+            if !overlap(bounds, other) {
                 continue;
             }
             if second == 0 {
                 for k in first..first + count {
-                    if holds(&self.boxes[k], point) {
+                    if overlap(&self.boxes[k], other) {
                         found(self.order[k]);
                     }
                 }
@@ -117,6 +107,6 @@ fn union(a: Aabb, b: &Aabb) -> Aabb {
     std::array::from_fn(|k| if k < 3 { a[k].min(b[k]) } else { a[k].max(b[k]) })
 }
 
-fn holds(bounds: &Aabb, point: Point) -> bool {
-    (0..3).all(|axis| bounds[axis] <= point[axis] && point[axis] <= bounds[axis + 3])
+fn overlap(a: &Aabb, b: &Aabb) -> bool {
+    (0..3).all(|axis| a[axis] <= b[axis + 3] && b[axis] <= a[axis + 3])
 }

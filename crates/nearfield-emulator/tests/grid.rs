@@ -3,8 +3,8 @@
 use nearfield_conformance::cases::{self, Case};
 use nearfield_core::{ListKind, NeighborList, Radii, System, oracle};
 use nearfield_cuda::{
-    Buffer, Gpu,
-    grid::{self, Candidates, DeviceList, ForceQuery, Grid, ListQuery, Survey},
+    Buffer, DeviceList, Gpu,
+    grid::{self, Candidates, ForceQuery, Grid, ListQuery, Pairs, Survey},
 };
 use nearfield_emulator::Emulator;
 use nearfield_kernels::{
@@ -12,6 +12,16 @@ use nearfield_kernels::{
     layouts::{Box3, Law, Results},
 };
 use std::sync::Arc;
+
+/// How forces are found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum By {
+    Cells,
+    CellsOnce,
+    AllPairs,
+}
+
+const EVERY_WAY: [By; 3] = [By::Cells, By::CellsOnce, By::AllPairs];
 
 /// A system on the emulator, in an order of memory that is not that of the input.
 struct Device {
@@ -107,7 +117,7 @@ impl Device {
         self.exact.upload(&vec![0; 5 * self.n]).unwrap();
     }
 
-    fn evaluate(&mut self, cells: bool, energy: bool, exact: bool) {
+    fn evaluate(&mut self, by: By, energy: bool, exact: bool) {
         self.zero();
         let results = Results {
             force: self.force.ptr(),
@@ -117,9 +127,10 @@ impl Device {
             exact: self.exact.ptr(),
         };
         let (law, space, velocity) = (self.law, self.space, self.velocity.ptr());
-        let query = ForceQuery { law, space, velocity, results, energy, exact };
+        let pairs = if by == By::CellsOnce { Pairs::Once } else { Pairs::Directed };
+        let query = ForceQuery { law, space, velocity, results, energy, exact, pairs };
         // SAFETY: all arrays are as long as results need them to be.
-        unsafe { grid::forces(&*self.gpu, self.candidates(cells), &query) }.unwrap();
+        unsafe { grid::forces(&*self.gpu, self.candidates(by != By::AllPairs), &query) }.unwrap();
     }
 
     /// Forces, energies and neighbour counts in input order.
@@ -138,7 +149,7 @@ impl Device {
         let mut list = DeviceList::new(&self.gpu);
         let query = ListQuery { law: self.law, space: self.space, id: self.id.ptr(), kind, images: true };
         // SAFETY: every input index is there once.
-        unsafe { list.fill(self.candidates(cells), &query) }.unwrap();
+        unsafe { grid::list(&*self.gpu, self.candidates(cells), &query, &mut list) }.unwrap();
         let image = |c: u8| [(c % 3) as i8 - 1, (c / 3 % 3) as i8 - 1, (c / 9) as i8 - 1];
         NeighborList {
             kind,
@@ -153,7 +164,7 @@ impl Device {
 fn systems() -> Vec<Case> {
     let mut all = cases::all();
     all.extend((0..20).map(|seed| Case { name: format!("random {seed}"), system: cases::random(seed) }));
-    all.retain(|case| case.system.particles.len() > 0);
+    all.retain(|case| !case.system.particles.is_empty());
     all
 }
 
@@ -173,10 +184,10 @@ fn neighbour_counts_are_those_of_the_reference() {
     for Case { name, system } in systems() {
         let expected = expected_counts(&system);
         let mut device = Device::new(&system);
-        for cells in [true, false] {
-            device.evaluate(cells, true, false);
+        for by in EVERY_WAY {
+            device.evaluate(by, true, false);
             let counts: Vec<u32> = device.results().iter().map(|r| r.2).collect();
-            assert_eq!(counts, expected, "{name}, cells {cells}");
+            assert_eq!(counts, expected, "{name}, by {by:?}");
         }
     }
 }
@@ -205,11 +216,11 @@ fn order_independent_sums_are_the_same_by_cells_and_by_all_pairs() {
     for Case { name, system } in systems() {
         let mut device = Device::new(&system);
         // One class of cells stores numbers, several leave quanta: the numbers are of tests of their own.
-        if Candidates::Cells(&device.grid).scatters() {
+        if Candidates::Cells(&device.grid).scatters(Pairs::Directed) {
             continue;
         }
-        let mut found = [true, false].map(|cells| {
-            device.evaluate(cells, true, true);
+        let mut found = [By::Cells, By::AllPairs].map(|by| {
+            device.evaluate(by, true, true);
             device.results()
         });
         let [cells, all] = &mut found;
@@ -233,15 +244,15 @@ fn fast_kernels_give_the_forces_of_those_for_any_law() {
         if uniform && !(1e-36..1e36).contains(&sigma.powi(12)) {
             continue;
         }
-        device.evaluate(false, true, false);
+        device.evaluate(By::AllPairs, true, false);
         let expected = device.results();
         let scale = expected.iter().flat_map(|r| r.0).fold(100.0 / sigma as f32, |m, f| m.max(f.abs()));
-        for cells in [true, false] {
-            device.evaluate(cells, false, false);
+        for by in EVERY_WAY {
+            device.evaluate(by, false, false);
             for (i, (found, expected)) in device.results().iter().zip(&expected).enumerate() {
                 for axis in 0..3 {
                     let difference = (found.0[axis] - expected.0[axis]).abs();
-                    assert!(difference < 1e-5 * scale, "{name}, cells {cells}, {i}: {found:?} and {expected:?}");
+                    assert!(difference < 1e-5 * scale, "{name}, by {by:?}, {i}: {found:?} and {expected:?}");
                 }
             }
         }
@@ -265,9 +276,11 @@ fn cells_planned_for_other_positions_are_right() {
         }
         device.position.upload(&position).unwrap();
         device.build();
-        device.evaluate(true, true, false);
-        let counts: Vec<u32> = device.results().iter().map(|r| r.2).collect();
-        assert_eq!(counts, expected_counts(&system), "seed {seed}");
+        for by in [By::Cells, By::CellsOnce] {
+            device.evaluate(by, true, false);
+            let counts: Vec<u32> = device.results().iter().map(|r| r.2).collect();
+            assert_eq!(counts, expected_counts(&system), "seed {seed}, by {by:?}");
+        }
     }
 }
 
@@ -282,7 +295,8 @@ fn a_run_that_has_blown_up_stays_within_its_memory() {
     let position: Vec<Float4> = (0..100).map(|i| Float4::new(at(i), at(i / 7), at(i / 3), 0.0)).collect();
     device.position.upload(&position).unwrap();
     device.build();
-    device.evaluate(true, true, false);
+    device.evaluate(By::Cells, true, false);
+    device.evaluate(By::CellsOnce, true, false);
     let mut places = device.grid.order().download().unwrap();
     places.sort_unstable();
     assert!(places.into_iter().eq(0..100), "every particle has a slot");
@@ -295,7 +309,7 @@ fn a_run_that_has_blown_up_stays_within_its_memory() {
 fn no_particles_are_no_work() {
     let system = cases::soft(cases::cube(4.0, [nearfield_core::Boundary::Open; 3]), Vec::new(), Radii::Uniform(1.0));
     let mut device = Device::new(&system);
-    device.evaluate(true, true, false);
+    device.evaluate(By::CellsOnce, true, false);
     assert_eq!(device.list(true, ListKind::Full).offsets, [0]);
     assert_eq!(device.grid.layout().particle.address(), Ptr::<u32>::NULL.address());
 }

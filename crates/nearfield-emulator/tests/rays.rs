@@ -4,9 +4,9 @@ mod common;
 use bytemuck::{Pod, Zeroable};
 use common::*;
 use nearfield_core::Result;
-use nearfield_cuda::gpu::{Aabb, AccelerationStructure, Gpu, RayTracing, Trace};
+use nearfield_cuda::gpu::{Aabb, AccelerationStructure, Bodies, Gpu, RayTracing, Trace};
 use nearfield_emulator::Emulator;
-use nearfield_kernels::{Float4, Ptr};
+use nearfield_kernels::{Float4, Primitive, Ptr};
 
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
@@ -79,7 +79,7 @@ fn trace(gpu: &Emulator, handle: u64, points: &[Float4]) -> Result<Vec<Found>> {
 
 fn run(gpu: &Emulator, raygen: &'static str, rays: &Rays, n: usize) -> Result<()> {
     let parameters = bytemuck::bytes_of(rays);
-    let trace = Trace { module: "rays", raygen, intersection: "boxes", rays: n as u32, parameters };
+    let trace = Trace { module: "rays", primitive: Primitive::Box, raygen, hit: "boxes", rays: n as u32, parameters };
     // SAFETY: the arrays have an entry for each ray; the emulator checks the handle.
     unsafe { tracing(gpu).trace(trace) }
 }
@@ -89,7 +89,7 @@ fn built(gpu: &Emulator, boxes: &[Aabb]) -> (Box<dyn AccelerationStructure>, Ptr
     let address = Ptr::new(buffer(gpu, boxes));
     let mut structure = tracing(gpu).structure().unwrap();
     // SAFETY: as many as there are.
-    unsafe { structure.build_boxes(address, boxes.len() as u32) }.unwrap();
+    unsafe { structure.build(Bodies::Boxes(address), boxes.len() as u32) }.unwrap();
     (structure, address)
 }
 
@@ -145,12 +145,12 @@ fn boxes_that_move_are_seen_after_a_refit_and_not_before() {
     unsafe { gpu.upload(bytemuck::cast_slice(&after), address.address()) }.unwrap();
     assert_eq!(trace(&gpu, handle, &points).unwrap(), brute_force(&before, &[[0.0; 3]], &points));
     // SAFETY: as many as there are.
-    unsafe { structure.refit_boxes(address, 500) }.unwrap();
+    unsafe { structure.refit(Bodies::Boxes(address), 500) }.unwrap();
     assert_eq!(structure.handle(), handle);
     assert_eq!(trace(&gpu, handle, &points).unwrap(), brute_force(&after, &[[0.0; 3]], &points));
     // SAFETY: fewer than there are.
-    let text = failure(unsafe { structure.refit_boxes(address, 499) });
-    assert!(text.contains("499 boxes to a structure of 500"), "{text}");
+    let text = failure(unsafe { structure.refit(Bodies::Boxes(address), 499) });
+    assert!(text.contains("499 boxes to a structure of 500 boxes"), "{text}");
 }
 
 #[test]
@@ -164,12 +164,12 @@ fn outdated_handles_and_instances_are_reported() {
     assert!(text.contains("not built"), "{text}");
     instances.build_instances(&*structure, &[[0.0; 3]]).unwrap();
     // SAFETY: as many as there are.
-    unsafe { structure.refit_boxes(address, 50) }.unwrap();
+    unsafe { structure.refit(Bodies::Boxes(address), 50) }.unwrap();
     assert!(failure(trace(&gpu, instances.handle(), &points)).contains("refitted since"));
     instances.build_instances(&*structure, &[[0.0; 3]]).unwrap();
     let old = structure.handle();
     // SAFETY: as many as there are.
-    unsafe { structure.build_boxes(address, 50) }.unwrap();
+    unsafe { structure.build(Bodies::Boxes(address), 50) }.unwrap();
     assert!(failure(trace(&gpu, instances.handle(), &points)).contains("rebuilt or dropped"));
     assert!(failure(trace(&gpu, old, &points)).contains("no acceleration structure"));
     trace(&gpu, structure.handle(), &points).unwrap();
@@ -185,7 +185,7 @@ fn structures_take_memory_and_give_it_back() {
     let mut structure = tracing(&gpu).structure().unwrap();
     assert_eq!((structure.handle(), structure.bytes()), (0, 0));
     // SAFETY: as many as there are.
-    unsafe { structure.build_boxes(address, 100) }.unwrap();
+    unsafe { structure.build(Bodies::Boxes(address), 100) }.unwrap();
     assert!(structure.bytes() > 0);
     assert_eq!(gpu.memory().unwrap().free, free - structure.bytes());
     drop(structure);

@@ -25,5 +25,5 @@ KERNEL(fit_boxes, BoxesArgs, 256) {
     fit_axis(x.x + s.x, half, box, box + 3);
     fit_axis(x.y + s.y, half, box + 1, box + 4);
     fit_axis(x.z + s.z, half, box + 2, box + 5);
-    if (a.faces && k < a.n && (faces_within(a.space, x, half) & ~(u32)a.faces[k]) != 0) *a.counter = 1;
+    note_missing_ghosts(a, k, x);
 }

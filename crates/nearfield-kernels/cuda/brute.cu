@@ -5,9 +5,9 @@
 template <class L, bool EXACT, bool ENERGY> __device__ inline void brute_forces(const GatherArgs& a) {
     const ClusterPlace cluster = consecutive_cluster(a.n, thread_index() / WARP);
     if (cluster.count == 0) return;
-    Gather<L, EXACT, ENERGY, true> gather(a, cluster);
+    Gather<L, EXACT, ENERGY, NO_IMAGE> gather(a, cluster);
     meet_all(a.n, gather);
-    gather.store(cluster);
+    gather.store();
 }
 
 KERNEL_MIN_BLOCKS(brute_uniform, GatherArgs, WARPS_PER_BLOCK* WARP, 6) {

@@ -6,10 +6,10 @@ template <class L, bool EXACT, bool ENERGY> __device__ inline void cell_forces(c
     __shared__ Scratch scratch[WARPS_PER_BLOCK];
     const ClusterPlace cluster = find_cluster(a.grid, a.n, thread_index() / WARP);
     if (cluster.count == 0) return;
-    Gather<L, EXACT, ENERGY, false> gather(a, cluster);
+    Gather<L, EXACT, ENERGY, DIRECTED> gather(a, cluster);
     search_cells<!Traits<L>::ONE_RANGE>(a.grid, a.space, a.slack, cluster, cluster_bounds(gather.x),
                                         scratch[threadIdx.x / WARP], gather);
-    gather.store(cluster);
+    gather.store();
 }
 
 KERNEL_MIN_BLOCKS(cell_uniform, GatherArgs, WARPS_PER_BLOCK* WARP, 6) {

@@ -1,18 +1,14 @@
-// Neighbour lists by cells and by testing all pairs.
+// Neighbour lists by cells and by testing all pairs, with one cutoff or a radius for each particle.
 
 #include "lists.cuh"
 
-template <class V> __device__ inline void list_by_cells(const ListArgs& a) {
+template <class V, bool WITHIN> __device__ inline void list_by_cells(const ListArgs& a) {
     __shared__ Scratch scratch[WARPS_PER_BLOCK];
     const ClusterPlace cluster = find_cluster(a.grid, a.n, thread_index() / WARP);
     if (cluster.count == 0) return;
     V lister(a, cluster);
-    const Bounds box = cluster_bounds(lister.x);
-    if (a.law.variable) {
-        search_cells<true>(a.grid, a.space, a.slack, cluster, box, scratch[threadIdx.x / WARP], lister);
-    } else {
-        search_cells<false>(a.grid, a.space, a.slack, cluster, box, scratch[threadIdx.x / WARP], lister);
-    }
+    search_cells<WITHIN>(a.grid, a.space, a.slack, cluster, cluster_bounds(lister.x), scratch[threadIdx.x / WARP],
+                         lister);
     lister.store(cluster);
 }
 
@@ -24,18 +20,34 @@ template <class V> __device__ inline void list_all(const ListArgs& a) {
     lister.store(cluster);
 }
 
-KERNEL(cell_list_count, ListArgs, WARPS_PER_BLOCK* WARP) {
-    list_by_cells<ListCount<false>>(a);
+KERNEL_MIN_BLOCKS(cell_list_count, ListArgs, WARPS_PER_BLOCK* WARP, 6) {
+    list_by_cells<ListCount<false, false>, false>(a);
 }
 
-KERNEL(cell_list_fill, ListArgs, WARPS_PER_BLOCK* WARP) {
-    list_by_cells<ListFill<false>>(a);
+KERNEL_MIN_BLOCKS(cell_list_count_radii, ListArgs, WARPS_PER_BLOCK* WARP, 6) {
+    list_by_cells<ListCount<false, true>, true>(a);
 }
 
-KERNEL(brute_list_count, ListArgs, WARPS_PER_BLOCK* WARP) {
-    list_all<ListCount<true>>(a);
+KERNEL_MIN_BLOCKS(cell_list_fill, ListArgs, WARPS_PER_BLOCK* WARP, 6) {
+    list_by_cells<ListFill<false, false>, false>(a);
 }
 
-KERNEL(brute_list_fill, ListArgs, WARPS_PER_BLOCK* WARP) {
-    list_all<ListFill<true>>(a);
+KERNEL_MIN_BLOCKS(cell_list_fill_radii, ListArgs, WARPS_PER_BLOCK* WARP, 6) {
+    list_by_cells<ListFill<false, true>, true>(a);
+}
+
+KERNEL_MIN_BLOCKS(brute_list_count, ListArgs, WARPS_PER_BLOCK* WARP, 6) {
+    list_all<ListCount<true, false>>(a);
+}
+
+KERNEL_MIN_BLOCKS(brute_list_count_radii, ListArgs, WARPS_PER_BLOCK* WARP, 6) {
+    list_all<ListCount<true, true>>(a);
+}
+
+KERNEL_MIN_BLOCKS(brute_list_fill, ListArgs, WARPS_PER_BLOCK* WARP, 6) {
+    list_all<ListFill<true, false>>(a);
+}
+
+KERNEL_MIN_BLOCKS(brute_list_fill_radii, ListArgs, WARPS_PER_BLOCK* WARP, 6) {
+    list_all<ListFill<true, true>>(a);
 }

@@ -3,6 +3,7 @@
 // need the present ones; velocities and image counts are nobody else's, types excepted, which do not change.
 
 #include "integrate.cuh"
+#include "point_rays.cuh"
 #include "ray_sums.cuh"
 
 PARAMETERS(AdvanceRays)
@@ -31,13 +32,13 @@ __device__ __noinline__ void move_particle(u32 i, float4 force) {
 
 template <bool EXACT> __device__ inline void advance_rays() {
     const u32 i = params.rays.first + rt::ray_index();
-    const Sums<EXACT, false> sums = sum_rays<EXACT, false>(params.rays, i);
+    const Sums<EXACT, false> sums = sum_rays<PointRays, EXACT, false>(params.rays, i);
     store_sums<false>(params.results, params.rays.law, params.rays.particles.n, i, sums);
     move_particle(i, params.results.force[i]);
 }
 
 template <class L, bool EXACT> __device__ inline void advance_pair() {
-    const Meeting m = meet(params.rays);
+    const Meeting m = PointRays::meet(params.rays);
     if (!m.near) return;
     add_to_ray<EXACT, false>(params.rays.law, m, force_between<L, false>(params.rays, m));
 }

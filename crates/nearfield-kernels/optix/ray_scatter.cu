@@ -1,18 +1,19 @@
 // rt-forces (ORCS-forces, paper A, section 3.2.2): each pair is computed by the ray of the smaller radius and added to
 // both particles, whose sums are zero before.
 
+#include "point_rays.cuh"
 #include "ray_sums.cuh"
 
 PARAMETERS(ForceRays)
 
 template <bool EXACT, bool ENERGY> __device__ inline void scatter_rays() {
     const u32 i = params.rays.first + rt::ray_index();
-    const Sums<EXACT, ENERGY> sums = sum_rays<EXACT, ENERGY>(params.rays, i);
+    const Sums<EXACT, ENERGY> sums = sum_rays<PointRays, EXACT, ENERGY>(params.rays, i);
     scatter_sums<ENERGY>(params.results, params.rays.law, params.rays.particles.n, i, sums);
 }
 
 template <class L, bool EXACT, bool ENERGY> __device__ inline void scatter_pair() {
-    const Meeting m = meet(params.rays);
+    const Meeting m = PointRays::meet(params.rays);
     if (!m.near || !acts(params.rays, m)) return;
     const PairForce pair = force_between<L, ENERGY>(params.rays, m);
     add_to_ray<EXACT, ENERGY>(params.rays.law, m, pair);

@@ -1,10 +1,11 @@
 //! Every kernel, by the structure it takes.
 
 use crate::{
-    ByForce, Kernel, RayProgram,
+    ByForce, Kernel, Primitive, RayProgram,
     layouts::{
-        AdvanceRays, BoundsArgs, BoxesArgs, FinishExactArgs, ForceRays, GatherArgs, IntegrateArgs, ListArgs, ListRays,
-        MortonArgs, MotionArgs, PermuteArgs, RescaleArgs, RowsArgs, SampleArgs, ScanArgs, SortArgs, TotalsArgs,
+        AdvanceRays, BodiesArgs, BoundsArgs, BoxesArgs, ClusterListArgs, ClusterStepArgs, ClustersMovedArgs,
+        FinishExactArgs, ForceRays, GatherArgs, IntegrateArgs, ListArgs, ListRays, ListedArgs, MortonArgs, MotionArgs,
+        PermuteArgs, RescaleArgs, RowsArgs, SampleArgs, ScanArgs, SortArgs, TotalsArgs,
     },
 };
 
@@ -58,6 +59,56 @@ pub const CELL_FORCES: ByForce<Kernel<GatherArgs>> = ByForce {
     exact_energy: Kernel::new("cell_forces", "cell_exact_energy", 128),
 };
 
+/// Forces from candidates in cells, each pair found once and added to zeros, but for sums that do not depend on order.
+pub const CLUSTER_FORCES: ByForce<Kernel<GatherArgs>> = ByForce {
+    uniform_lj: Kernel::new("cluster_forces", "cluster_uniform", 128),
+    scaled_lj: Kernel::new("cluster_forces", "cluster_scaled", 128),
+    fast: Kernel::new("cluster_forces", "cluster_any", 128),
+    energy: Kernel::new("cluster_forces", "cluster_any_energy", 128),
+    ..CELL_FORCES
+};
+
+/// Lists of what is near each [`CLUSTER`].
+pub const LIST_CLUSTERS: Kernel<ClusterListArgs> = Kernel::new("cluster_list", "list_clusters", 128);
+/// Most chunks of a segment of these lists but the last.
+pub const SEGMENT: usize = 15;
+/// Whether lists serve the present positions.
+pub const CLUSTERS_MOVED: Kernel<ClustersMovedArgs> = Kernel::new("cluster_list", "clusters_moved", 256);
+
+/// Forces from lists of clusters, where one cutoff serves all pairs; a warp for each [`CLUSTER`].
+pub const LISTED_FORCES: ByForce<Kernel<ListedArgs>> = ByForce {
+    uniform_lj: Kernel::new("listed_forces", "listed_uniform", 128),
+    scaled_lj: Kernel::new("listed_forces", "listed_any", 128),
+    fast: Kernel::new("listed_forces", "listed_any", 128),
+    energy: Kernel::new("listed_forces", "listed_any_energy", 128),
+    exact: Kernel::new("listed_forces", "listed_exact", 128),
+    exact_energy: Kernel::new("listed_forces", "listed_exact_energy", 128),
+};
+
+/// Kernels that make a step by lists of clusters.
+#[derive(Clone, Copy)]
+pub struct StepKernels {
+    /// For plain Lennard-Jones.
+    pub uniform_lj: Kernel<ClusterStepArgs>,
+    /// For any interaction.
+    pub any: Kernel<ClusterStepArgs>,
+    /// Clusters that a warp takes.
+    pub clusters: usize,
+}
+
+/// Steps where clusters have many neighbours.
+pub const STEP: StepKernels = StepKernels {
+    uniform_lj: Kernel::new("cluster_step", "step_uniform", 128),
+    any: Kernel::new("cluster_step", "step_any", 128),
+    clusters: 1,
+};
+/// Steps where most clusters have none.
+pub const STEP_SPARSE: StepKernels = StepKernels {
+    uniform_lj: Kernel::new("cluster_step", "step_sparse_uniform", 128),
+    any: Kernel::new("cluster_step", "step_sparse_any", 128),
+    clusters: 4,
+};
+
 /// Forces by testing all pairs; a warp for each [`CLUSTER`].
 pub const BRUTE_FORCES: ByForce<Kernel<GatherArgs>> = ByForce {
     uniform_lj: Kernel::new("brute", "brute_uniform", 128),
@@ -68,17 +119,44 @@ pub const BRUTE_FORCES: ByForce<Kernel<GatherArgs>> = ByForce {
     exact_energy: Kernel::new("brute", "brute_exact_energy", 128),
 };
 
-/// Neighbours of each particle, counted.
-pub const CELL_LIST_COUNT: Kernel<ListArgs> = Kernel::new("lists", "cell_list_count", 128);
-/// Neighbours of each particle, listed.
-pub const CELL_LIST_FILL: Kernel<ListArgs> = Kernel::new("lists", "cell_list_fill", 128);
-/// Neighbours of each particle, counted by testing all pairs.
-pub const BRUTE_LIST_COUNT: Kernel<ListArgs> = Kernel::new("lists", "brute_list_count", 128);
-/// Neighbours of each particle, listed by testing all pairs.
-pub const BRUTE_LIST_FILL: Kernel<ListArgs> = Kernel::new("lists", "brute_list_fill", 128);
+/// Kernels that list neighbours; a warp for each [`CLUSTER`].
+#[derive(Clone, Copy)]
+pub struct ListKernels {
+    /// Entries of each row.
+    pub count: Kernel<ListArgs>,
+    /// The rows.
+    pub fill: Kernel<ListArgs>,
+}
+
+/// Lists from candidates in cells where one cutoff serves all pairs.
+pub const CELL_LIST: ListKernels = ListKernels {
+    count: Kernel::new("lists", "cell_list_count", 128),
+    fill: Kernel::new("lists", "cell_list_fill", 128),
+};
+/// Lists from candidates in cells where radii are per particle.
+pub const CELL_LIST_RADII: ListKernels = ListKernels {
+    count: Kernel::new("lists", "cell_list_count_radii", 128),
+    fill: Kernel::new("lists", "cell_list_fill_radii", 128),
+};
+/// Lists by testing all pairs where one cutoff serves all.
+pub const BRUTE_LIST: ListKernels = ListKernels {
+    count: Kernel::new("lists", "brute_list_count", 128),
+    fill: Kernel::new("lists", "brute_list_fill", 128),
+};
+/// Lists by testing all pairs where radii are per particle.
+pub const BRUTE_LIST_RADII: ListKernels = ListKernels {
+    count: Kernel::new("lists", "brute_list_count_radii", 128),
+    fill: Kernel::new("lists", "brute_list_fill_radii", 128),
+};
 
 /// Boxes around particles and ghosts.
 pub const FIT_BOXES: Kernel<BoxesArgs> = Kernel::new("boxes", "fit_boxes", 256);
+/// Centres of spheres around particles and ghosts.
+pub const FIT_SPHERES: Kernel<BodiesArgs> = Kernel::new("bodies", "fit_spheres", 256);
+/// Triangles of squares around particles and ghosts.
+pub const FIT_SQUARES: Kernel<BodiesArgs> = Kernel::new("bodies", "fit_squares", 256);
+/// Triangles of the two squares around a particle.
+pub const TRIANGLES_PER_PARTICLE: u32 = 4;
 /// Faces of particles, and the number of ghosts.
 pub const COUNT_GHOSTS: Kernel<BoxesArgs> = Kernel::new("ghosts", "count_ghosts", 256);
 /// Mirror particles.
@@ -100,18 +178,27 @@ pub const ROWS_LANES: u64 = 8;
 pub const PAYLOAD_WORDS: u32 = 16;
 
 const fn program<A: crate::Layout>(module: &'static str, name: &'static str) -> RayProgram<A> {
-    RayProgram::new(module, name, name)
+    RayProgram::new(module, Primitive::Box, name)
 }
 
-/// Forces of all particles where one cutoff serves all pairs; there is no scaled Lennard-Jones.
-pub const RAY_GATHER: ByForce<RayProgram<ForceRays>> = ByForce {
-    fast: program("ray_gather", "gather"),
-    energy: program("ray_gather", "gather_energy"),
-    exact: program("ray_gather", "gather_exact"),
-    exact_energy: program("ray_gather", "gather_exact_energy"),
-    uniform_lj: program("ray_gather", "gather_uniform_lj"),
-    scaled_lj: program("ray_gather", "gather"),
-};
+/// The programs of a module of `ray_gather.cuh`. There is no scaled Lennard-Jones, which is for per-particle radii.
+const fn gather(module: &'static str, primitive: Primitive) -> ByForce<RayProgram<ForceRays>> {
+    ByForce {
+        fast: RayProgram::new(module, primitive, "gather"),
+        energy: RayProgram::new(module, primitive, "gather_energy"),
+        exact: RayProgram::new(module, primitive, "gather_exact"),
+        exact_energy: RayProgram::new(module, primitive, "gather_exact_energy"),
+        uniform_lj: RayProgram::new(module, primitive, "gather_uniform_lj"),
+        scaled_lj: RayProgram::new(module, primitive, "gather"),
+    }
+}
+
+/// Forces of all particles where one cutoff serves all pairs, by point rays through boxes.
+pub const RAY_GATHER: ByForce<RayProgram<ForceRays>> = gather("ray_gather", Primitive::Box);
+/// The same by axis rays through spheres.
+pub const AXIS_GATHER: ByForce<RayProgram<ForceRays>> = gather("axis_gather", Primitive::Sphere);
+/// The same by edge rays through squares.
+pub const EDGE_GATHER: ByForce<RayProgram<ForceRays>> = gather("edge_gather", Primitive::Triangle);
 /// Forces of all particles, added to zeros.
 pub const RAY_SCATTER: ByForce<RayProgram<ForceRays>> = ByForce {
     fast: program("ray_scatter", "scatter"),
@@ -127,7 +214,15 @@ pub const RAY_ADVANCE: RayProgram<AdvanceRays> = program("ray_advance", "advance
 pub const RAY_ADVANCE_EXACT: RayProgram<AdvanceRays> = program("ray_advance", "advance_exact");
 /// The same in f32 for plain Lennard-Jones.
 pub const RAY_ADVANCE_UNIFORM_LJ: RayProgram<AdvanceRays> = program("ray_advance", "advance_uniform_lj");
-/// Entries of each row of neighbours.
+/// Entries of each row of neighbours, by point rays.
 pub const RAY_COUNT: RayProgram<ListRays> = program("ray_list", "count");
-/// Rows of neighbours.
+/// Rows of neighbours, by point rays.
 pub const RAY_FILL: RayProgram<ListRays> = program("ray_list", "fill");
+/// Entries of each row of neighbours, by axis rays.
+pub const AXIS_COUNT: RayProgram<ListRays> = RayProgram::new("axis_list", Primitive::Sphere, "count");
+/// Rows of neighbours, by axis rays.
+pub const AXIS_FILL: RayProgram<ListRays> = RayProgram::new("axis_list", Primitive::Sphere, "fill");
+/// Entries of each row of neighbours, by edge rays.
+pub const EDGE_COUNT: RayProgram<ListRays> = RayProgram::new("edge_list", Primitive::Triangle, "count");
+/// Rows of neighbours, by edge rays.
+pub const EDGE_FILL: RayProgram<ListRays> = RayProgram::new("edge_list", Primitive::Triangle, "fill");

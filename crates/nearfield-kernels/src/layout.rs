@@ -1,7 +1,7 @@
 //! Host and device structures from one definition.
 //!
-//! [`layouts!`] declares a `#[repr(C)]` structure and knows how to write it in C++. `cuda/include/layouts.cuh` is made
-//! of these by [`header`], with the size of each asserted, so that host and device cannot disagree.
+//! `layouts!` declares a `#[repr(C)]` structure and knows how to write it in C++. `cuda/include/layouts.cuh` is made
+//! of these by [`crate::layouts::header`], with the size of each asserted, so that host and device cannot disagree.
 
 use bytemuck::{Pod, Zeroable};
 use std::{fmt::Write as _, marker::PhantomData};

@@ -11,7 +11,7 @@ pub mod layouts;
 mod modules;
 mod variants;
 
-pub use kernel::{Kernel, RayProgram};
+pub use kernel::{Kernel, Primitive, RayProgram};
 pub use layout::{Float4, Layout, Ptr};
 pub use modules::{MODULES, Module, RAY_MODULES};
 pub use variants::ByForce;

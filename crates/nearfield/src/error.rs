@@ -1,6 +1,6 @@
 //! What can go wrong, and whose fault it is.
 
-use crate::{config, generate, io::IoError};
+use crate::{config, generate, io::IoError, render};
 use std::path::PathBuf;
 
 /// Shorthand for results of this crate.
@@ -22,6 +22,9 @@ pub enum Error {
     /// A generator.
     #[error(transparent)]
     Generate(#[from] generate::Error),
+    /// A picture.
+    #[error(transparent)]
+    Render(#[from] render::Error),
     /// The device cannot be used here.
     #[error("device {device} is not available: {reason}")]
     DeviceUnavailable {

@@ -7,6 +7,7 @@
 //! | run a configuration file as the command does | [`run`] |
 //! | make initial conditions | [`generate`] |
 //! | read and write files | [`io`] |
+//! | draw pictures | [`render`] |
 //!
 //! ```
 //! use nearfield::{Boundary, ListKind, ListRequest, NeighborSearch, SimBox};
@@ -26,6 +27,7 @@ pub mod generate;
 pub mod io;
 mod methods;
 pub mod observe;
+pub mod render;
 pub mod run;
 mod search;
 mod setup;
@@ -42,7 +44,7 @@ pub use nearfield_core::{
     System, Totals, Truncation, Vec3s, interaction, potentials,
 };
 pub use search::{NeighborSearch, Neighbors, Pair};
-pub use setup::{file_points, file_system, system};
+pub use setup::{configuration_system, file_points, file_system, system};
 pub use simulation::{Progress, Simulation, SimulationBuilder};
 pub use thermo::Thermo;
 

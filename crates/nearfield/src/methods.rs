@@ -40,6 +40,8 @@ fn support(method: Method, device: &'static str) -> MethodSupport {
         Method::RtPerse => ("boxes, point ray, advance", "ORCS-perse (A)"),
         Method::Cluster => ("cluster grid, cluster pairs, list", "ours"),
         Method::RtBoxes => ("boxes, point ray, gather", "custom AABB (B)"),
+        Method::RtSpheres => ("spheres, axis rays, gather", "spheres (B)"),
+        Method::RtSquares => ("squares, edge rays, gather", "double squares (B)"),
     };
     MethodSupport {
         method,

@@ -32,7 +32,7 @@ pub fn system(config: &Config) -> Result<System> {
 /// # Errors
 /// As [`system`].
 pub fn file_system(config: &Config, path: &Path, boundary: Option<[Boundary; 3]>) -> Result<System> {
-    configured(config, path, io::read(path, &io::ReadOptions::default())?, boundary)
+    configuration_system(config, &io::input_name(path), io::read(path, &io::ReadOptions::default())?, boundary)
 }
 
 /// The validated, wrapped particles of an input file for a search alone, with one cutoff where the file gives no
@@ -47,12 +47,17 @@ pub fn file_points(path: &Path, cutoff: f32, boundary: Option<[Boundary; 3]>) ->
     configuration.mass = None;
     let mut config = Config::default();
     config.interaction.cutoff = f64::from(cutoff);
-    configured(&config, path, configuration, boundary)
+    configuration_system(&config, &io::input_name(path), configuration, boundary)
 }
 
-fn configured(
+/// The validated, wrapped system of what was read from a file, as a frame of a trajectory; `file` names it in messages.
+/// Otherwise as [`file_system`].
+///
+/// # Errors
+/// As [`system`].
+pub fn configuration_system(
     config: &Config,
-    path: &Path,
+    file: &str,
     configuration: Configuration,
     boundary: Option<[Boundary; 3]>,
 ) -> Result<System> {
@@ -62,19 +67,19 @@ fn configured(
             .map_or([Boundary::Periodic; 3], |axes| axes.map(|p| if p { Boundary::Periodic } else { Boundary::Open })),
         None => [Boundary::Open; 3],
     });
-    let mut system = assemble(config, path, configuration, boundary)?;
-    system.validate().map_err(|source| Error::Input { file: io::input_name(path), source })?;
+    let mut system = assemble(config, file, configuration, boundary)?;
+    system.validate().map_err(|source| Error::Input { file: file.into(), source })?;
     system.wrap();
     Ok(system)
 }
 
-fn assemble(config: &Config, path: &Path, configuration: Configuration, boundary: [Boundary; 3]) -> Result<System> {
+fn assemble(config: &Config, file: &str, configuration: Configuration, boundary: [Boundary; 3]) -> Result<System> {
     let n = configuration.len();
     let sim_box = match configuration.bounds {
         Some(Bounds { lo, hi, .. }) => SimBox::new(lo, hi, boundary)?,
         None if boundary == [Boundary::Open; 3] => bounding_box(&configuration.position)?,
         None => {
-            return Err(Error::NoBox { file: io::input_name(path), why: "periodic and wall boundaries need" });
+            return Err(Error::NoBox { file: file.into(), why: "periodic and wall boundaries need" });
         }
     };
     let kinds = config.interaction.match_species(&configuration.species.names)?;

@@ -1,10 +1,11 @@
 //! Generated initial conditions: geometry, statistics, reproducibility.
 
 use nearfield::generate::{
-    self, Distribution, Error, Generate, Outside, Positions, RadiiSpec, cluster, disordered, fcc, lattice,
+    self, Distribution, Error, Generate, Outside, Positions, RadiiSpec, Workload, cluster, disordered, fcc, lattice,
     sphere_surface, sphere_surface_cutoff, temperature, velocities,
 };
 use nearfield_core::{Boundary, Particles, Radii, SimBox, Vec3s, oracle};
+use std::f64::consts::PI;
 
 fn cube(length: f32, boundary: Boundary) -> SimBox {
     SimBox::cubic(length, boundary).unwrap()
@@ -173,6 +174,27 @@ fn sphere_points_lie_on_the_surface_and_have_the_neighbours_paper_b_asks_for() {
     assert!((expected / 72.0 - 1.0).abs() < 0.01);
 }
 
+#[test]
+fn workloads_of_paper_b_have_its_numbers_of_particles_and_neighbours() {
+    let mean_neighbours = |workload: &Workload| {
+        let start = workload.start.build([Boundary::Open; 3], 1.0).unwrap();
+        let pairs = oracle::pairs(&start.sim_box, &start.particles, &Radii::Uniform(workload.cutoff as f32));
+        2.0 * pairs.len() as f64 / start.particles.len() as f64
+    };
+    let uniform = Workload::uniform(8, 8);
+    assert_eq!((uniform.start.n, uniform.cutoff), (4096, 0.125));
+    // The probability that two uniform points of the unit cube are closer than c <= 1.
+    let c = uniform.cutoff;
+    let within = c.powi(3) * (4.0 / 3.0 * PI - 1.5 * PI * c + 1.6 * c.powi(2) - c.powi(3) / 6.0);
+    let expected = 4095.0 * within;
+    assert!((mean_neighbours(&uniform) / expected - 1.0).abs() < 0.02, "expected {expected}");
+
+    let sphere = Workload::sphere_surface(16, 2);
+    assert_eq!(sphere.start.n, 8192);
+    let mean = mean_neighbours(&sphere);
+    assert!((mean / 18.0 - 1.0).abs() < 0.03, "{mean} neighbours on the sphere, 18 expected");
+}
+
 /// E[max(r_i, r_j)³] over the pairs of a sample, by sorting.
 fn mean_cubed_range(radii: &[f32]) -> f64 {
     let mut sorted: Vec<f64> = radii.iter().map(|&r| f64::from(r)).collect();
@@ -189,7 +211,7 @@ fn radius_distributions_of_paper_a_give_the_known_mean_neighbour_counts() {
             Radii::Uniform(r) => f64::from(r).powi(3),
             Radii::PerParticle(radii) => mean_cubed_range(&radii),
         };
-        999_999.0 * 4.0 / 3.0 * std::f64::consts::PI * mean_cubed / 1e9
+        999_999.0 * 4.0 / 3.0 * PI * mean_cubed / 1e9
     };
     let lognormal = RadiiSpec::default();
     let clamped = RadiiSpec { outside: Outside::Clamp, ..lognormal.clone() };
@@ -214,7 +236,7 @@ fn counted_neighbours_of_a_disordered_start_match_the_expectation() {
     let particles = Particles::at(disordered(n, &sim_box, 21).iter());
     let radii = RadiiSpec::default().draw(n, 21).unwrap();
     let Radii::PerParticle(values) = &radii else { panic!("radii are per particle") };
-    let expected = (n - 1) as f64 * 4.0 / 3.0 * std::f64::consts::PI * mean_cubed_range(values) / 1e9;
+    let expected = (n - 1) as f64 * 4.0 / 3.0 * PI * mean_cubed_range(values) / 1e9;
     let found = 2.0 * oracle::pairs(&sim_box, &particles, &radii).len() as f64 / n as f64;
     assert!((found / expected - 1.0).abs() < 0.05, "{found} neighbours, expected {expected}");
 }

@@ -1,6 +1,6 @@
 //! PTX to machine code by ptxas: whether it can be done, and the resources each kernel needs.
 
-use super::{Source, Tools};
+use super::{Source, Target, Tools};
 use crate::command::target;
 use std::{
     fs,
@@ -40,22 +40,24 @@ impl<'a> Assembler<'a> {
         Ok(Self { ptxas: &tools.ptxas, folder })
     }
 
-    /// Assembles for each of [`ARCHITECTURES`].
-    pub fn assemble_for_all(&self, source: &Source, ptx: &str) -> Result<(), String> {
-        let input = &self.input(source, ptx)?;
+    /// Assembles for each of [`ARCHITECTURES`] from the target on.
+    pub fn assemble_for_all(&self, source: &Source, target: Target, ptx: &str) -> Result<(), String> {
+        let input = &self.input(source, target, ptx)?;
+        let first = ARCHITECTURES.iter().position(|&architecture| architecture == target.0).unwrap_or(0);
         thread::scope(|scope| {
-            let runs = ARCHITECTURES.map(|architecture| scope.spawn(move || self.ptxas(input, architecture)));
+            let run = |&architecture| scope.spawn(move || self.ptxas(input, architecture));
+            let runs: Vec<_> = ARCHITECTURES[first..].iter().map(run).collect();
             runs.into_iter().try_for_each(|run| run.join().expect("threads only run ptxas").map(drop))
         })
     }
 
     /// What each kernel of a module needs.
-    pub fn resources(&self, source: &Source, ptx: &str, architecture: &str) -> Result<Vec<Kernel>, String> {
-        Ok(parse_resources(&self.ptxas(&self.input(source, ptx)?, architecture)?))
+    pub fn resources(&self, source: &Source, target: Target, ptx: &str, on: &str) -> Result<Vec<Kernel>, String> {
+        Ok(parse_resources(&self.ptxas(&self.input(source, target, ptx)?, on)?))
     }
 
-    fn input(&self, source: &Source, ptx: &str) -> Result<PathBuf, String> {
-        let path = self.folder.join(format!("{}.ptx", source.name));
+    fn input(&self, source: &Source, target: Target, ptx: &str) -> Result<PathBuf, String> {
+        let path = self.folder.join(format!("{}.ptx", source.ptx_name(target)));
         let text = if source.is_optix() { without_optix_calls(ptx)? } else { ptx.to_owned() };
         fs::write(&path, text).map_err(|error| format!("{}: {error}", path.display()))?;
         Ok(path)

@@ -18,15 +18,14 @@ mod tools;
 
 use crate::command::{cargo_command, output};
 use assemble::Assembler;
-use sources::Source;
+use sources::{Source, Target};
 use std::{fs, path::Path};
 use tools::Tools;
 
 pub const ABOUT: &str = "device code: writes layouts.cuh and PTX; --check compares, --registers [ARCH] lists";
 
-/// Compute capability 7.5 is the first with ray tracing cores and all that the kernels use. Contraction to fused
-/// multiply-adds is off because host and device must round alike.
-const OPTIONS: [&str; 3] = ["--gpu-architecture=compute_75", "--std=c++17", "--fmad=false"];
+/// Contraction to fused multiply-adds is off because host and device must round alike.
+const OPTIONS: [&str; 2] = ["--std=c++17", "--fmad=false"];
 
 pub fn run(arguments: &[&str]) -> Result<(), String> {
     match arguments {
@@ -41,14 +40,14 @@ pub fn run(arguments: &[&str]) -> Result<(), String> {
 fn write() -> Result<(), String> {
     let tools = Tools::fetch()?;
     let sources = sources::all()?;
-    for source in &sources {
-        if !source.ptx_file().exists() {
-            write_file(&source.ptx_file(), "")?;
+    for file in outputs(&sources).map(|(source, target)| source.ptx_file(target)) {
+        if !file.exists() {
+            write_file(&file, "")?;
         }
     }
     write_file(&sources::layouts_file(), &describe("header")?)?;
-    for source in &sources {
-        write_file(&source.ptx_file(), &compile(&tools, source)?)?;
+    for (source, target) in outputs(&sources) {
+        write_file(&source.ptx_file(target), &compile(&tools, source, target)?)?;
     }
     check_modules(&sources)
 }
@@ -61,9 +60,9 @@ fn check() -> Result<(), String> {
     if read_file(&sources::layouts_file())? != describe("header")? {
         stale.push(sources::layouts_file());
     }
-    for source in &sources {
-        if read_file(&source.ptx_file())? != compile(&tools, source)? {
-            stale.push(source.ptx_file());
+    for (source, target) in outputs(&sources) {
+        if read_file(&source.ptx_file(target))? != compile(&tools, source, target)? {
+            stale.push(source.ptx_file(target));
         }
     }
     if !stale.is_empty() {
@@ -71,8 +70,8 @@ fn check() -> Result<(), String> {
         return Err(format!("not what its source gives: {}; run `cargo xtask ptx`", names.join(", ")));
     }
     let assembler = Assembler::new(&tools)?;
-    for source in &sources {
-        assembler.assemble_for_all(source, &read_file(&source.ptx_file())?)?;
+    for (source, target) in outputs(&sources) {
+        assembler.assemble_for_all(source, target, &read_file(&source.ptx_file(target))?)?;
     }
     println!("{} files are up to date and assemble for sm_{}", sources.len(), assemble::ARCHITECTURES.join(", "));
     Ok(())
@@ -83,7 +82,11 @@ fn registers(architecture: &str) -> Result<(), String> {
     let assembler = Assembler::new(&tools)?;
     println!("{:<48} {:>9} {:>6} {:>6} {:>6}", "", "registers", "spills", "stack", "shared");
     for source in &sources::all()? {
-        for kernel in assembler.resources(source, &compile(&tools, source)?, architecture)? {
+        // Target and architecture are numbers of two or three digits.
+        let number = |text: &str| text.parse().unwrap_or(u32::MAX);
+        let runs = |target: &Target| number(target.0) <= number(architecture);
+        let target = source.targets().into_iter().rfind(runs).ok_or("no source is compiled for that architecture")?;
+        for kernel in assembler.resources(source, target, &compile(&tools, source, target)?, architecture)? {
             let name = format!("{}: {}", source.name, kernel.name);
             let assemble::Kernel { registers, spills, stack, shared, .. } = kernel;
             println!("{name:<48} {registers:>9} {spills:>6} {stack:>6} {shared:>6}");
@@ -92,9 +95,15 @@ fn registers(architecture: &str) -> Result<(), String> {
     Ok(())
 }
 
-fn compile(tools: &Tools, source: &Source) -> Result<String, String> {
+/// Each source with each of its targets.
+fn outputs(sources: &[Source]) -> impl Iterator<Item = (&Source, Target)> {
+    sources.iter().flat_map(|source| source.targets().into_iter().map(move |target| (source, target)))
+}
+
+fn compile(tools: &Tools, source: &Source, target: Target) -> Result<String, String> {
+    let architecture = format!("--gpu-architecture=compute_{}", target.0);
     let include = format!("-I{}", sources::include_folder().display());
-    let options: Vec<&str> = OPTIONS.into_iter().chain([include.as_str()]).collect();
+    let options: Vec<&str> = OPTIONS.into_iter().chain([architecture.as_str(), include.as_str()]).collect();
     // The bare file name: the PTX must not depend on where the workspace lies.
     tools.nvrtc.compile(&format!("{}.cu", source.name), &read_file(&source.file)?, &options)
 }

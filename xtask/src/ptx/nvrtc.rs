@@ -83,7 +83,7 @@ impl Nvrtc {
         if !log.trim().is_empty() {
             println!("{log}");
         }
-        ptx
+        ptx.map(|ptx| without_call_numbers(&ptx))
     }
 
     /// A text of a program.
@@ -101,5 +101,27 @@ impl Nvrtc {
             bytes.pop();
         }
         String::from_utf8(bytes).map_err(|error| error.to_string())
+    }
+}
+
+/// Comments number the calls of all sources compiled before by the same process; without the numbers the PTX depends on
+/// its source alone.
+fn without_call_numbers(ptx: &str) -> String {
+    let mut text = String::with_capacity(ptx.len());
+    for line in ptx.lines() {
+        text.push_str(line.split_once("// callseq").map_or(line, |(code, _)| code.trim_end()));
+        text.push('\n');
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::without_call_numbers;
+
+    #[test]
+    fn numbers_of_calls_are_taken_out() {
+        let ptx = "\tadd;\n\t{ // callseq 7, 0\n\t} // callseq 7\n";
+        assert_eq!(without_call_numbers(ptx), "\tadd;\n\t{\n\t}\n");
     }
 }

@@ -14,12 +14,34 @@ pub struct Source {
     pub folder: &'static str,
     /// Where it is.
     pub file: PathBuf,
+    /// Whether it is compiled for compute capability 9.0 too.
+    pub vector_reductions: bool,
 }
 
+/// What a source is compiled for: an architecture, and those above.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Target(pub &'static str);
+
+/// Compute capability 7.5 is the first with ray tracing cores and all that the kernels use.
+const EVERY_GPU: Target = Target("75");
+/// The first that adds vectors of floats by one atomic instruction.
+const VECTOR_REDUCTIONS: Target = Target("90");
+
 impl Source {
+    /// What it is compiled for.
+    pub fn targets(&self) -> Vec<Target> {
+        let newer = self.vector_reductions.then_some(VECTOR_REDUCTIONS);
+        [EVERY_GPU].into_iter().chain(newer).collect()
+    }
+
     /// Where it is compiled to.
-    pub fn ptx_file(&self) -> PathBuf {
-        ptx_folder().join(format!("{}.ptx", self.name))
+    pub fn ptx_file(&self, target: Target) -> PathBuf {
+        ptx_folder().join(format!("{}.ptx", self.ptx_name(target)))
+    }
+
+    /// Name of the compiled file without its extension.
+    pub fn ptx_name(&self, target: Target) -> String {
+        if target == EVERY_GPU { self.name.clone() } else { format!("{}.sm_{}", self.name, target.0) }
     }
 
     /// Its path in the crate.
@@ -42,7 +64,9 @@ pub fn all() -> Result<Vec<Source>, String> {
             if sources.iter().any(|source: &Source| source.name == name) {
                 return Err(format!("{} has the name of another source", file.display()));
             }
-            sources.push(Source { name, folder, file });
+            let text = fs::read_to_string(&file).map_err(|error| format!("{}: {error}", file.display()))?;
+            let vector_reductions = text.lines().any(|line| line == "#define VECTOR_REDUCTIONS");
+            sources.push(Source { name, folder, file, vector_reductions });
         }
     }
     Ok(sources)
@@ -51,7 +75,8 @@ pub fn all() -> Result<Vec<Source>, String> {
 /// PTX files without a source.
 pub fn orphans(sources: &[Source]) -> Result<Vec<PathBuf>, String> {
     let mut files = files_with(&ptx_folder(), "ptx")?;
-    files.retain(|file| !sources.iter().any(|source| source.ptx_file() == *file));
+    let is_of = |source: &Source, file: &Path| source.targets().iter().any(|&target| source.ptx_file(target) == file);
+    files.retain(|file| !sources.iter().any(|source| is_of(source, file)));
     Ok(files)
 }
 

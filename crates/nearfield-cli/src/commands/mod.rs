@@ -5,6 +5,7 @@ pub mod forces;
 pub mod generate;
 pub mod methods;
 pub mod neighbors;
+pub mod render;
 pub mod run;
 
 use nearfield::{

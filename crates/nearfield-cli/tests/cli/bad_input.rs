@@ -132,7 +132,7 @@ fn a_misspelt_key_is_named_with_its_line_and_the_nearest_key() {
 fn an_unknown_method_device_or_word_lists_those_that_exist() {
     let folder = Folder::new();
     folder.write("good.xyz", GOOD).write("run.toml", RUN);
-    let methods = ["brute", "cell", "rt-list", "rt-forces", "rt-perse", "rt-boxes"];
+    let methods = ["brute", "cell", "rt-list", "rt-forces", "rt-perse", "rt-boxes", "rt-spheres", "rt-squares"];
     for line in ["run run.toml", "forces good.xyz", "neighbors good.xyz --cutoff 1"] {
         folder.refuse(&format!("{line} --method cel"), &methods);
         folder.refuse(&format!("{line} --device gpu"), &["gpu", "auto, cpu, cuda, cuda:N"]);
@@ -176,7 +176,7 @@ fn a_method_that_does_not_support_the_system_says_what_does() {
     let folder = Folder::new();
     let text = "2\nLattice=\"10 0 0 0 10 0 0 0 10\" Properties=pos:R:3:radius:R:1\n1 1 1 1\n2 2 2 2\n";
     folder.write("radii.xyz", text).write("run.toml", "[system]\ninput = \"radii.xyz\"");
-    for method in ["rt-perse", "rt-boxes"] {
+    for method in ["rt-perse", "rt-boxes", "rt-spheres", "rt-squares"] {
         let words = [&format!("method {method} does not support this system")[..], "use cell, rt-list or rt-forces"];
         folder.refuse(&format!("neighbors radii.xyz --cutoff 1 --method {method} --output pairs.csv"), &words);
         folder.refuse(&format!("forces radii.xyz --method {method}"), &words);
@@ -209,7 +209,9 @@ fn an_empty_system_has_no_neighbours_and_cannot_run() {
     let folder = Folder::new();
     folder.write("empty.xyz", "0\nLattice=\"10 0 0 0 10 0 0 0 10\"\n").write("open.xyz", "0\n\n");
     for file in ["empty.xyz", "open.xyz"] {
-        for method in ["auto", "brute", "cell", "rt-list", "rt-forces", "rt-perse", "rt-boxes"] {
+        for method in
+            ["auto", "brute", "cell", "rt-list", "rt-forces", "rt-perse", "rt-boxes", "rt-spheres", "rt-squares"]
+        {
             let line = format!("neighbors {file} --cutoff 1 --json --output pairs.csv --method {method}");
             let json: serde_json::Value = serde_json::from_str(&folder.succeed(&line).stdout).unwrap();
             assert_eq!(
@@ -231,7 +233,8 @@ fn particles_at_one_place_are_both_named_where_the_potential_diverges() {
     let folder = Folder::new();
     let text = GOOD.replace("A 5 5 5", "A 1 1 1");
     folder.write("twins.xyz", text).write("run.toml", "[system]\ninput = \"twins.xyz\"");
-    for method in ["auto", "brute", "cell", "rt-list", "rt-forces", "rt-perse", "rt-boxes"] {
+    for method in ["auto", "brute", "cell", "rt-list", "rt-forces", "rt-perse", "rt-boxes", "rt-spheres", "rt-squares"]
+    {
         let words = ["particles 0 and 2 are at the same place", "diverges"];
         folder.refuse(&format!("forces twins.xyz --output forces.csv --method {method}"), &words);
         folder.refuse(&format!("run run.toml --method {method}"), &words);

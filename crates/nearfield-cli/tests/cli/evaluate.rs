@@ -7,7 +7,8 @@ use nearfield::{
 use nearfield_core::oracle;
 use std::collections::BTreeSet;
 
-const METHODS: [&str; 7] = ["auto", "brute", "cell", "rt-list", "rt-forces", "rt-perse", "rt-boxes"];
+const METHODS: [&str; 9] =
+    ["auto", "brute", "cell", "rt-list", "rt-forces", "rt-perse", "rt-boxes", "rt-spheres", "rt-squares"];
 
 /// A disordered periodic fluid that is far from any overlap.
 fn fluid(boundary: [Boundary; 3]) -> System {

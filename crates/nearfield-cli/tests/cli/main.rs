@@ -4,5 +4,6 @@ mod bad_input;
 mod command;
 mod evaluate;
 mod listings;
+mod render;
 mod resume;
 mod run;

@@ -101,7 +101,7 @@ fn files_that_are_no_earlier_run_are_never_overwritten() {
 
 #[test]
 fn a_run_that_blows_up_names_step_particle_and_checkpoint_and_leaves_readable_files() {
-    for method in ["brute", "cell", "rt-list", "rt-forces", "rt-perse", "rt-boxes"] {
+    for method in ["brute", "cell", "rt-list", "rt-forces", "rt-perse", "rt-boxes", "rt-spheres", "rt-squares"] {
         let folder = Folder::new();
         folder.write("melt.toml", MELT);
         let line = format!("run melt.toml --method {method} --steps 500");

@@ -3,12 +3,15 @@
 //!
 //! Particle j is the box `c_j ± r_j`, so a point ray from i finds exactly the j with `|x_i - x_j| < r_j` on each
 //! axis, the rest of which the predicate refuses. The radius of the *query* plays no part: a pair with
-//! `r_j <= d < r_i` is found from the side of j alone.
+//! `r_j <= d < r_i` is found from the side of j alone. Other bodies and rays find the same where there is one radius:
+//! see [`Probe`].
 
 mod hilbert;
 mod images;
 mod node;
 mod order;
+mod probe;
+mod ray_cast;
 mod sort;
 #[cfg(test)]
 mod tests;
@@ -20,7 +23,9 @@ use images::{Scene, Views};
 use nearfield_core::{Images, SimBox, predicate::conservative_range};
 use node::Aabb;
 pub(crate) use order::CurveOrder;
+pub use probe::Probe;
 use pulp::{Arch, Simd, WithSimd};
+pub use ray_cast::Ray;
 use rayon::prelude::*;
 use std::ops::Range;
 use tree::{Tree, half_width};
@@ -58,6 +63,7 @@ pub enum Refit {
 #[derive(Clone, Debug)]
 pub struct Bvh {
     arch: Arch,
+    probe: Probe,
     order: CurveOrder,
     slots: Slots,
     tree: Tree,
@@ -73,10 +79,16 @@ pub struct Bvh {
 }
 
 impl Bvh {
-    /// A tree of nothing, seeing periodic images by `images`.
+    /// A tree of nothing for point rays, seeing periodic images by `images`.
     pub fn new(images: Images) -> Self {
+        Self::with_probe(Probe::Point, images)
+    }
+
+    /// A tree of nothing for rays of another kind.
+    pub fn with_probe(probe: Probe, images: Images) -> Self {
         Self {
             arch: Arch::new(),
+            probe,
             order: CurveOrder::default(),
             slots: Slots::default(),
             tree: Tree::default(),
@@ -120,9 +132,10 @@ impl Bvh {
         if self.sim_box.is_none() || !same_input {
             return Refit::NeedsBuild;
         }
-        self.fit(input);
+        let largest = self.fit(input);
+        let beyond_body = (1.0 - self.probe.body()) * half_width(largest);
         match self.views.ghosts() {
-            Some(ghosts) if !ghosts.suffice(&self.tree, &self.slots, input) => Refit::NeedsBuild,
+            Some(ghosts) if !ghosts.suffice(&self.tree, &self.slots, input, beyond_body) => Refit::NeedsBuild,
             _ => Refit::Done,
         }
     }
@@ -139,26 +152,30 @@ impl Bvh {
         self.slots.bytes() + self.tree.bytes() + self.order.bytes() + ghosts
     }
 
-    fn fit(&mut self, input: &Input) {
+    /// Gives the largest radius.
+    fn fit(&mut self, input: &Input) -> f32 {
         let (radii, largest): (&[f32], f32) = match input.radii {
             InputRadii::Uniform(r) => (&[], r),
             InputRadii::PerParticle(radii) => (radii, order::range(radii).1),
         };
         gather(&mut self.slots.radius, &self.slots.particle, radii, 0.0);
         self.uniform_radius = matches!(input.radii, InputRadii::Uniform(_)).then_some(largest);
-        let sim_box = input.sim_box;
+        let (sim_box, body) = (input.sim_box, self.probe.body());
         match self.views.ghosts() {
-            Some(ghosts) => self.tree.fit(self.arch, &mut self.slots, input, |leaf| sim_box.shift(ghosts.image(leaf))),
-            None => self.tree.fit(self.arch, &mut self.slots, input, |_| [0.0; 3]),
+            Some(ghosts) => {
+                self.tree.fit(self.arch, &mut self.slots, input, body, |leaf| sim_box.shift(ghosts.image(leaf)));
+            }
+            None => self.tree.fit(self.arch, &mut self.slots, input, body, |_| [0.0; 3]),
         }
         let root = self.tree.root();
         let corners = [root.lo, root.hi, sim_box.lo(), sim_box.hi()];
         let extent = corners.as_flattened().iter().fold(0.0, |extent: f32, c| extent.max(c.abs()));
-        self.slack = if self.n_particles == 0 { 0.0 } else { conservative_range(0.0, extent) };
+        self.slack = if self.n_particles == 0 { 0.0 } else { self.probe.roundings() * conservative_range(0.0, extent) };
         self.views.update(&Scene { sim_box, root, largest: half_width(largest) });
         self.images.clear();
         self.images.extend(sim_box.images().into_iter().map(|image| (image, sim_box.shift(image.map(|c| -c)))));
         self.sim_box = Some(*sim_box);
+        largest
     }
 }
 
@@ -196,15 +213,32 @@ impl WithSimd for Trace<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { bvh, group, out } = self;
-        let query = Aabb { lo: group.lo, hi: group.hi }.inflated(bvh.slack);
+        let query = Aabb { lo: self.group.lo, hi: self.group.hi }.inflated(self.bvh.slack);
+        let reach = half_width(self.bvh.uniform_radius.unwrap_or(0.0));
+        match self.bvh.probe {
+            Probe::Point => self.rays(&query, [query]),
+            Probe::Axes => self.rays(&query, probe::axis_rays(&query, reach)),
+            Probe::Edges => self.rays(&query, probe::edge_rays(&query, reach)),
+        }
+    }
+}
+
+impl Trace<'_> {
+    /// Traces the rays of all points in `query` together, so that a leaf is proposed once whichever of them it meets.
+    #[inline(always)]
+    fn rays<const N: usize>(self, query: &Aabb, rays: [Aabb; N]) {
+        let Self { bvh, out, .. } = self;
         let ghosts = bvh.views.ghosts();
-        let mut visible = bvh.views.visible(&query);
+        let mut visible = bvh.views.visible(query, &rays);
         while visible != 0 {
             let (view, back) = bvh.images[visible.trailing_zeros() as usize];
             visible &= visible - 1;
+            let mut there = rays;
+            for ray in &mut there {
+                *ray = ray.translated(back);
+            }
             bvh.tree.trace(
-                &query.translated(back),
+                &there,
                 #[inline(always)]
                 |leaf| {
                     let image = match ghosts {

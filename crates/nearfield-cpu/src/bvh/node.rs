@@ -100,6 +100,43 @@ impl Node {
         }
         mask
     }
+
+    /// Bit `l` is set when child `l` overlaps any of `queries`.
+    #[inline(always)]
+    pub fn overlap_any<const N: usize>(&self, queries: &[Aabb; N]) -> u32 {
+        let mut mask = 0;
+        for query in queries {
+            mask |= self.overlap(query);
+        }
+        mask
+    }
+
+    /// The distances at which a ray from `origin` enters the children, and a bit for each child that it meets within
+    /// `reach`. `inverse` is one over its direction, finite on every axis.
+    #[inline(always)]
+    pub fn entries(&self, origin: [f32; 3], inverse: [f32; 3], reach: f32) -> ([f32; LANES], u32) {
+        let (mut near, mut far) = ([0.0; LANES], [reach; LANES]);
+        for axis in 0..3 {
+            // By direction, not by size of the distances: an empty box must stay one.
+            let (enter, exit) =
+                if inverse[axis] >= 0.0 { (&self.lo[axis], &self.hi[axis]) } else { (&self.hi[axis], &self.lo[axis]) };
+            for lane in 0..LANES {
+                let t = (enter[lane] - origin[axis]) * inverse[axis];
+                near[lane] = if t > near[lane] { t } else { near[lane] };
+                let t = (exit[lane] - origin[axis]) * inverse[axis];
+                far[lane] = if t < far[lane] { t } else { far[lane] };
+            }
+        }
+        let mut hit = [0; LANES];
+        for lane in 0..LANES {
+            hit[lane] = u32::from(near[lane] <= far[lane]) << lane;
+        }
+        let mut mask = 0;
+        for bit in hit {
+            mask |= bit;
+        }
+        (near, mask)
+    }
 }
 
 /// The smallest of sixteen numbers, none of them NaN, by halving: each step is one SIMD minimum.

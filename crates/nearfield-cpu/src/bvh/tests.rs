@@ -1,6 +1,6 @@
 //! The tree against brute force: what it proposes, once filtered by the predicate, is exactly the set of pairs.
 
-use super::{Bvh, Refit};
+use super::{Bvh, Probe, Refit};
 use crate::{GroupBox, Input, InputRadii, Run, Structure};
 use nearfield_core::predicate::{displacement, is_neighbor, squared_length};
 use nearfield_core::{Boundary, Images, SimBox};
@@ -171,9 +171,19 @@ fn cases(seed: u64) -> Vec<Case> {
 }
 
 fn is_exact_after_build_and_refits(images: Images) {
+    for probe in Probe::ALL {
+        is_exact_with(probe, images);
+    }
+}
+
+fn is_exact_with(probe: Probe, images: Images) {
     let rng = &mut Rng::seed_from_u64(11);
-    let mut bvh = Bvh::new(images);
+    let mut bvh = Bvh::with_probe(probe, images);
     for mut case in cases(3) {
+        if case.radii.is_some() && probe != Probe::Point {
+            continue;
+        }
+        case.name = format!("{probe:?}, {}", case.name);
         case.with_input(|input| bvh.build(input));
         assert_exact(&bvh, &case, "after build");
         for step in [0.01, 0.1, 2.0] {
@@ -184,6 +194,34 @@ fn is_exact_after_build_and_refits(images: Images) {
                 case.with_input(|input| bvh.build(input));
             }
             assert_exact(&bvh, &case, &format!("after drift {step}, {refit:?}"));
+        }
+    }
+}
+
+#[test]
+fn axis_and_edge_rays_find_offsets_on_diagonals_and_edges_of_their_geometry() {
+    let side = 6;
+    let place = |k: usize| [k % side, k / side % side, k / side / side].map(|c| c as f32);
+    for (spacing, cutoffs) in [(1.0f32, [1.0, 2.0, 3.0, 5.0, 6.0]), (0.1, [1.0, 2.0, 3.0, 5.0, 6.0])] {
+        for squared in cutoffs {
+            let exactly = spacing * f32::sqrt(squared);
+            for cutoff in [exactly.next_down(), exactly, exactly.next_up()] {
+                for boundary in [[Boundary::Periodic; 3], [Boundary::Open; 3]] {
+                    let sim_box = SimBox::new([0.0; 3], [side as f32 * spacing; 3], boundary).unwrap();
+                    let case = Case {
+                        name: format!("lattice of {spacing}, cutoff {cutoff}, {boundary:?}"),
+                        sim_box,
+                        positions: (0..side.pow(3)).map(|k| place(k).map(|c| c * spacing)).collect(),
+                        radii: None,
+                        cutoff,
+                    };
+                    for (probe, &images) in Probe::ALL.iter().flat_map(|p| Images::ALL.iter().map(move |i| (p, i))) {
+                        let mut bvh = Bvh::with_probe(*probe, images);
+                        case.with_input(|input| bvh.build(input));
+                        assert_exact(&bvh, &case, &format!("by {probe:?} and {images}"));
+                    }
+                }
+            }
         }
     }
 }
@@ -298,8 +336,8 @@ fn pairs_at_the_edge_of_range_across_a_face_survive_rounding() {
     println!("seed 15");
     let rng = &mut Rng::seed_from_u64(15);
     let mut accepted = 0;
-    for images in Images::ALL {
-        let mut bvh = Bvh::new(*images);
+    for (&probe, images) in Probe::ALL.iter().flat_map(|probe| Images::ALL.iter().map(move |images| (probe, images))) {
+        let mut bvh = Bvh::with_probe(probe, *images);
         for _ in 0..5000 {
             // Large coordinates, coarser at one face than at the other: all sums round, by far more than the relative
             // error of the radius.
@@ -308,10 +346,15 @@ fn pairs_at_the_edge_of_range_across_a_face_survive_rounding() {
             let sim_box = SimBox::new([origin; 3], upper, BOUNDARIES[0]).unwrap();
             let cutoff = rng.random_range(0.5..2.0f32);
             let x = sim_box.hi()[0] - rng.random_range(0.0..cutoff);
-            let across = sim_box.wrap([x + cutoff, origin, origin]).0;
+            // Along an axis, and where spheres and squares are only just large enough.
+            let direction = [[1.0, 0.0, 0.0], [1.0; 3], [1.0, 1.0, 0.0]][rng.random_range(0..3)];
+            let step = cutoff / squared_length(direction).sqrt();
+            let middle = 0.5 * (origin + upper[0]);
+            let start = [x, middle, middle];
+            let across = sim_box.wrap(std::array::from_fn(|axis| start[axis] + step * direction[axis])).0;
             for ulps in -6..=6i32 {
                 let bits = across[0].to_bits().wrapping_add_signed(ulps);
-                let positions = vec![[x, origin, origin], [f32::from_bits(bits), origin, origin]];
+                let positions = vec![start, [f32::from_bits(bits), across[1], across[2]]];
                 let case = Case { name: String::new(), sim_box, positions, radii: None, cutoff };
                 if !case.holds((0, 1, [1, 0, 0])) || sim_box.wrap(case.positions[1]).0 != case.positions[1] {
                     continue;
@@ -323,7 +366,11 @@ fn pairs_at_the_edge_of_range_across_a_face_survive_rounding() {
                 let proposes = |run: &Run| {
                     run.image == [1, 0, 0] && bvh.slots().particle[run.start as usize..run.end as usize].contains(&1)
                 };
-                assert!(runs.iter().any(proposes), "{images}: {:?} in {sim_box:?}, cutoff {cutoff}", case.positions);
+                assert!(
+                    runs.iter().any(proposes),
+                    "{probe:?}, {images}: {:?} in {sim_box:?}, cutoff {cutoff}",
+                    case.positions
+                );
             }
         }
     }

@@ -21,8 +21,9 @@ pub(super) struct Tree {
     leaves: usize,
 }
 
-/// Half the width of a particle's box: its radius, and the rounding of the squared distance. The rounding of
-/// coordinates is added to queries instead, because it grows with the extent of the tree.
+/// How far a particle is seen on each axis, which is half the width of its box: its radius, and the rounding of the
+/// squared distance. The rounding of coordinates is added to queries instead, because it grows with the extent of the
+/// tree.
 #[inline(always)]
 pub(super) fn half_width(radius: f32) -> f32 {
     conservative_range(radius, 0.0)
@@ -47,9 +48,17 @@ impl Tree {
         self.levels.truncate(level);
     }
 
-    /// Gathers positions into `slots` and fits every box, leaf `l` moved by `leaf_shift(l)`.
-    pub fn fit(&mut self, arch: Arch, slots: &mut Slots, input: &Input, leaf_shift: impl Fn(usize) -> [f32; 3] + Sync) {
-        self.fit_leaves(arch, slots, input, leaf_shift);
+    /// Gathers positions into `slots` and fits every box, leaf `l` moved by `leaf_shift(l)`. Boxes are around bodies of
+    /// half width `body` times that of [`half_width`].
+    pub fn fit(
+        &mut self,
+        arch: Arch,
+        slots: &mut Slots,
+        input: &Input,
+        body: f32,
+        leaf_shift: impl Fn(usize) -> [f32; 3] + Sync,
+    ) {
+        self.fit_leaves(arch, slots, input, body, leaf_shift);
         for level in 1..self.levels.len() {
             let (below, above) = self.levels.split_at_mut(level);
             let children = below[level - 1].par_chunks(LANES);
@@ -64,6 +73,7 @@ impl Tree {
         arch: Arch,
         slots: &mut Slots,
         input: &Input,
+        body: f32,
         leaf_shift: impl Fn(usize) -> [f32; 3] + Sync,
     ) {
         let used = self.leaves * LANES;
@@ -84,6 +94,7 @@ impl Tree {
                 let range = index * SLOTS_PER_NODE..index * SLOTS_PER_NODE + x.len();
                 *node = arch.dispatch(FitLeaves {
                     input,
+                    body,
                     particle: &particle[range.clone()],
                     radius: radius.get(range).unwrap_or_default(),
                     position: [x, y, z],
@@ -97,15 +108,27 @@ impl Tree {
         self.levels.last().map_or(Aabb::EMPTY, |root| root[0].bounds())
     }
 
-    /// Calls `visit` with each leaf whose box overlaps `query`, in ascending order.
+    /// The level of the root, where there is one.
     #[inline(always)]
-    pub fn trace(&self, query: &Aabb, mut visit: impl FnMut(usize)) {
-        let Some(top) = self.levels.len().checked_sub(1) else { return };
+    pub fn top(&self) -> Option<usize> {
+        self.levels.len().checked_sub(1)
+    }
+
+    /// A node of a level.
+    #[inline(always)]
+    pub fn node(&self, level: usize, index: usize) -> &Node {
+        &self.levels[level][index]
+    }
+
+    /// Calls `visit` once with each leaf whose box overlaps any of the boxes around `rays`, in ascending order.
+    #[inline(always)]
+    pub fn trace<const N: usize>(&self, rays: &[Aabb; N], mut visit: impl FnMut(usize)) {
+        let Some(top) = self.top() else { return };
         // For each level on the way down: the node, and which of its children are still to be visited.
         let mut node = [0; MAX_LEVELS];
         let mut pending = [0; MAX_LEVELS];
         let mut level = top;
-        pending[top] = self.levels[top][0].overlap(query);
+        pending[top] = self.levels[top][0].overlap_any(rays);
         loop {
             if pending[level] == 0 {
                 if level == top {
@@ -126,7 +149,7 @@ impl Tree {
             pending[level] &= pending[level] - 1;
             level -= 1;
             node[level] = child;
-            pending[level] = self.levels[level][child].overlap(query);
+            pending[level] = self.levels[level][child].overlap_any(rays);
         }
     }
 
@@ -166,6 +189,7 @@ impl Tree {
 /// Gathers positions for the leaves below one node of the lowest level and finds their boxes.
 struct FitLeaves<'a> {
     input: &'a Input<'a>,
+    body: f32,
     particle: &'a [u32],
     /// Empty when uniform.
     radius: &'a [f32],
@@ -179,7 +203,7 @@ impl WithSimd for FitLeaves<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Node {
         let uniform = match self.input.radii {
-            InputRadii::Uniform(r) => half_width(r),
+            InputRadii::Uniform(r) => self.body * half_width(r),
             InputRadii::PerParticle(_) => 0.0,
         };
         let mut node = Node::EMPTY;
@@ -188,7 +212,7 @@ impl WithSimd for FitLeaves<'_> {
             let mut half = [uniform; LANES];
             if !self.radius.is_empty() {
                 for (half, &radius) in half.iter_mut().zip(&self.radius[slots.clone()]) {
-                    *half = half_width(radius);
+                    *half = self.body * half_width(radius);
                 }
             }
             let mut leaf = Aabb::EMPTY;

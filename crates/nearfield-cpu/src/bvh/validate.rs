@@ -51,7 +51,7 @@ impl Bvh {
         let Some(sim_box) = &self.sim_box else { return Ok(()) };
         for slot in (0..self.slots.len()).filter(|&slot| self.slots.particle[slot] != u32::MAX) {
             let leaf = slot / LANES;
-            let half = half_width(self.uniform_radius.unwrap_or_else(|| self.slots.radius[slot]));
+            let half = self.probe.body() * half_width(self.uniform_radius.unwrap_or_else(|| self.slots.radius[slot]));
             let image = self.views.ghosts().map_or([0; 3], |ghosts| ghosts.image(leaf));
             let shift = sim_box.shift(image);
             let center: [f32; 3] = std::array::from_fn(|axis| self.slots.at(slot)[axis] + shift[axis]);

@@ -28,7 +28,7 @@ pub(super) fn evaluate(physics: &Physics, blocks: &Blocks, list: &PairList, sums
             let c = coefficients.get(kind_i, kind_j, cutoff);
             [law.f_over_r(r2, &c), law.energy(r2, &c)]
         };
-        sums.evaluate_exactly(blocks, list, physics, out, &|list, sums| {
+        sums.evaluate_exactly(blocks, list, out, &|list, sums| {
             super::isa().run(Kernel { pair: &pair, blocks, list, physics, sums });
         })
     })

@@ -97,11 +97,11 @@ impl Clusters {
         } else if let (Truncation::Cut | Truncation::Energy, Some(law)) =
             (interaction.truncation, lennard_jones::Plain::new(physics))
         {
-            sums.evaluate(blocks, list, physics, law, out)
+            sums.evaluate(blocks, list, law, out)
         } else if interaction.truncation == Truncation::Force {
-            sums.evaluate(blocks, list, physics, lennard_jones::Typed::<true>::new(physics), out)
+            sums.evaluate(blocks, list, lennard_jones::Typed::<true>::new(physics), out)
         } else {
-            sums.evaluate(blocks, list, physics, lennard_jones::Typed::<false>::new(physics), out)
+            sums.evaluate(blocks, list, lennard_jones::Typed::<false>::new(physics), out)
         }
     }
 

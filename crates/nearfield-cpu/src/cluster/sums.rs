@@ -9,7 +9,7 @@ use super::{
     lennard_jones::{Kernel, Law},
     list::{PairList, Pairs},
 };
-use crate::{parallel::Scattered, physics::Physics};
+use crate::parallel::Scattered;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
@@ -95,7 +95,7 @@ impl PageSums {
     }
 
     /// Sums by a law for vectors. False when a force is not finite.
-    pub fn evaluate<P: Law>(&mut self, blocks: &Blocks, list: &PairList, _: &Physics, law: P, out: Output) -> bool {
+    pub fn evaluate<P: Law>(&mut self, blocks: &Blocks, list: &PairList, law: P, out: Output) -> bool {
         let (n, energies) = (self.n_blocks, !out.energy.is_empty());
         self.tasks.par_iter_mut().zip(&list.tasks).with_max_len(1).for_each(|(sums, task)| {
             let TaskSums { force, energy, touched, .. } = sums;
@@ -147,7 +147,6 @@ impl PageSums {
         &mut self,
         blocks: &Blocks,
         list: &PairList,
-        _: &Physics,
         out: Output,
         add: &(dyn Fn(&Pairs, &mut [Exact]) + Sync),
     ) -> bool {

@@ -2,12 +2,14 @@
 
 use super::{
     BLOCK, Clusters, Moving, Output,
+    blocks::Octet,
+    lennard_jones::{Kernel, Law, Plain, Typed},
     list::Pairs,
     quad::{CLUSTER, own_pairs},
 };
-use crate::{Grid, Input, InputRadii, Structure, physics::Physics, testing::uniform_points};
+use crate::{Grid, Input, InputRadii, Structure, lanes::Isa, physics::Physics, testing::uniform_points};
 use nearfield_core::{
-    Boundary, Interaction, Particles, Radii, SimBox, System, Vec3s, oracle,
+    Boundary, Interaction, ParticleType, Particles, Radii, SimBox, System, Truncation, Vec3s, oracle,
     predicate::{displacement, squared_length},
 };
 use std::collections::BTreeMap;
@@ -192,4 +194,94 @@ fn no_pair_is_missed_while_particles_move_and_cross_faces() {
     }
     assert!((10..60).contains(&served), "the list served {served} evaluations");
     assert!(crossed > 20, "{crossed} particles crossed a face");
+}
+
+/// Forces and energies of the blocks' particles by one law and instruction set.
+fn by_vectors<P: Law>(isa: Isa, built: &Built, law: P) -> Vec<[f64; 6]> {
+    let Clusters { blocks, list, .. } = &built.clusters;
+    let zeros = vec![Octet::default(); blocks.len()];
+    let (mut force, mut energy, mut only) = (zeros.clone(), zeros.clone(), zeros);
+    for task in &list.tasks {
+        let list = &task.inner;
+        isa.run(Kernel::<P, true> { law, blocks, list, force: &mut force, energy: &mut energy });
+        isa.run(Kernel::<P, false> { law, blocks, list, force: &mut only, energy: &mut [] });
+    }
+    let mut sums = vec![[0.0; 6]; built.system.particles.len()];
+    for b in 0..blocks.len() {
+        for (lane, i) in blocks.particles(b).enumerate() {
+            for k in 0..3 {
+                assert_eq!(force[b].0[k][lane], only[b].0[k][lane], "{isa:?}: energies change forces");
+                sums[i][k] = f64::from(force[b].0[k][lane] * law.scale());
+                sums[i][3 + k] = f64::from(energy[b].0[k][lane]);
+            }
+            sums[i][3] *= f64::from(law.scale());
+            sums[i][4] *= f64::from(law.scale());
+        }
+    }
+    sums
+}
+
+/// A liquid of three types in a box barely two cutoffs wide, whose positions are no lattice's.
+fn mixture(truncation: Truncation) -> System {
+    let length = 5.2;
+    let jitter = uniform_points(11, 125, [0.12; 3]);
+    let place = |k: usize, axis: usize| [k % 5, k / 5 % 5, k / 25][axis] as f32 * (length / 5.0) + jitter[k][axis];
+    let mut system = gas(0, [length; 3], Boundary::Periodic, 2.5, 0);
+    system.particles = Particles::at((0..125).map(|k| [place(k, 0), place(k, 1), place(k, 2)]));
+    system.interaction.truncation = truncation;
+    system.interaction.types = [(1.0, 1.0), (0.6, 0.9), (1.7, 0.95)]
+        .map(|(epsilon, sigma)| ParticleType { epsilon, sigma, ..ParticleType::default() })
+        .to_vec();
+    system
+}
+
+#[test]
+fn kernels_of_every_instruction_set_equal_the_oracle() {
+    for truncation in [Truncation::Cut, Truncation::Energy, Truncation::Force] {
+        for typed in [false, true] {
+            let mut system = mixture(truncation);
+            if !typed {
+                system.interaction.types.truncate(1);
+            }
+            let mut built = build(system, 0.1);
+            if typed {
+                let kinds: Vec<u32> = (0..built.system.particles.len() as u32).map(|i| i * 7 % 3).collect();
+                built.system.particles.kind.clone_from(&kinds);
+                let blocks = &mut built.clusters.blocks;
+                let of = |b: usize| kinds[blocks.particles(b)].to_vec();
+                let of_blocks: Vec<Vec<u32>> = (0..blocks.len()).map(of).collect();
+                blocks.kind.extend(
+                    of_blocks.iter().map(|k| std::array::from_fn::<_, BLOCK, _>(|l| k.get(l).copied().unwrap_or(0))),
+                );
+            }
+            let pairs = oracle::pairs(&built.system.sim_box, &built.system.particles, &built.system.radii);
+            let reference = oracle::evaluate_pairs(&built.system, &pairs);
+            for isa in Isa::available() {
+                let mut found = Vec::new();
+                if let (false, Some(law)) = (typed, Plain::new(&built.physics)) {
+                    assert!(truncation != Truncation::Force);
+                    found.push(by_vectors(isa, &built, law));
+                }
+                found.push(match truncation {
+                    Truncation::Force => by_vectors(isa, &built, Typed::<true>::new(&built.physics)),
+                    _ => by_vectors(isa, &built, Typed::<false>::new(&built.physics)),
+                });
+                for sums in found {
+                    let what = format!("{isa:?}, {truncation:?}, types: {typed}");
+                    let of = |k: usize| sums.iter().map(|s| s[k]).sum::<f64>();
+                    assert_eq!(of(5), 2.0 * reference.pairs as f64, "{what}");
+                    let close = |found: f64, exact: f64| (found - exact).abs() < 2e-6 * sums.len() as f64 * 50.0;
+                    assert!(close(0.5 * of(3), reference.potential_energy), "{what}: {}", 0.5 * of(3));
+                    assert!(close(0.5 * of(4), reference.virial), "{what}: {}", 0.5 * of(4));
+                    for (i, sums) in sums.iter().enumerate() {
+                        for axis in 0..3 {
+                            let (found, exact) = (sums[axis], reference.force[i][axis]);
+                            // Each of some fifty terms of up to a hundred is right to a few ulp.
+                            assert!((found - exact).abs() < 2e-3, "{what}: force {axis} on {i}: {found}, not {exact}");
+                        }
+                    }
+                }
+            }
+        }
+    }
 }

@@ -3,17 +3,31 @@
 use super::evaluate::Loaded;
 use crate::cluster::{Clusters, Output};
 use nearfield_core::{Plan, Radii, SimBox, maintenance::Action};
-use std::time::Instant;
+use std::{
+    sync::atomic::{AtomicBool, Ordering::Relaxed},
+    time::Instant,
+};
 
 /// The pair list and how it is kept.
 pub(super) struct StoredClusters {
     pub clusters: Clusters,
     /// At most what keeps range plus skin within half a periodic length.
     skin: f32,
-    /// Whether the list has proved too large: pairs are then found anew at each evaluation.
-    too_large: bool,
+    listing: Listing,
     /// Evaluations since the list was built.
     age: u64,
+    /// Whether the list must not outlive the present moment: see [`StoredClusters::end`].
+    ended: AtomicBool,
+}
+
+/// Whether there can be a list; otherwise pairs are found in the grid at each evaluation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Listing {
+    Possible,
+    /// The list was larger than the memory budget.
+    TooLarge,
+    /// Radii differ from particle to particle.
+    DifferentRadii,
 }
 
 impl StoredClusters {
@@ -23,7 +37,25 @@ impl StoredClusters {
             .filter(|&axis| sim_box.is_periodic(axis))
             .map(|axis| 0.5 * lengths[axis] - radii.largest())
             .fold(f32::INFINITY, f32::min);
-        Self { clusters: Clusters::default(), skin: plan.skin.min(room).max(0.0), too_large: false, age: 0 }
+        let listing = if radii.is_uniform() { Listing::Possible } else { Listing::DifferentRadii };
+        Self { clusters: Clusters::default(), skin: plan.skin.min(room).max(0.0), listing, age: 0, ended: AtomicBool::new(false) }
+    }
+}
+
+impl StoredClusters {
+    /// Has list and forces made anew before the next step. Another engine that takes the particles over has no list: the
+    /// order of sums, which is that of the list, would tell it from this one.
+    pub fn end(&self) {
+        self.ended.store(true, Relaxed);
+    }
+
+    /// Whether list and forces have ended; the list is then forgotten.
+    pub fn forget_if_ended(&mut self) -> bool {
+        let ended = std::mem::take(self.ended.get_mut());
+        if ended {
+            self.clusters.invalidate();
+        }
+        ended
     }
 }
 
@@ -33,14 +65,14 @@ impl Loaded {
         let Self { plan, physics, state, results, upkeep, clusters: stored, report, .. } = self;
         stored.age += 1;
         let start = Instant::now();
-        let serves = !stored.too_large && stored.clusters.refresh(state.moving_slices(self.dt));
+        let list = stored.listing == Listing::Possible;
+        let serves = list && stored.clusters.refresh(state.moving_slices(self.dt));
         report.refit_seconds += start.elapsed().as_secs_f64();
         if serves {
             return;
         }
         let start = Instant::now();
-        let list = !stored.too_large;
-        let input = state.input(physics, crate::InputRadii::Uniform(physics.cutoff() + stored.skin));
+        let input = state.input(physics, state.radii(physics));
         upkeep.update(Action::Build, &input, report);
         let gridded = start.elapsed();
         if list {
@@ -56,7 +88,7 @@ impl Loaded {
                 }
                 stored.age = 0;
             } else {
-                stored.too_large = true;
+                stored.listing = Listing::TooLarge;
                 stored.clusters = Clusters::default();
                 // The particles have left the order that the grid was built for.
                 let input = state.input(physics, state.radii(physics));
@@ -69,9 +101,13 @@ impl Loaded {
     /// Forces, and energies where results have room, from the list; `None` when there is none, else whether all forces
     /// are finite.
     pub fn evaluate_clusters(&mut self) -> Option<bool> {
-        if self.clusters.too_large {
-            self.report.batched_evaluations += 1;
-            return None;
+        match self.clusters.listing {
+            Listing::Possible => {}
+            Listing::TooLarge => {
+                self.report.batched_evaluations += 1;
+                return None;
+            }
+            Listing::DifferentRadii => return None,
         }
         let results = &mut self.results;
         let out = Output {

@@ -93,7 +93,9 @@ impl Loaded {
             }
             // The order of candidates depends on when the BVH was built, which policies decide by the clock:
             // exact sums keep results independent of it.
-            Method::RtBoxes | Method::RtPerse => gather(physics, structure, true, quantities.energy, &finish),
+            Method::RtBoxes | Method::RtSpheres | Method::RtSquares | Method::RtPerse => {
+                gather(physics, structure, true, quantities.energy, &finish);
+            }
             Method::RtForces => {
                 sums.reset(state.len());
                 scatter(physics, structure, sums);

@@ -1,6 +1,6 @@
 //! Keeping the structure in step with the particles: build, refit, and whose word decides.
 
-use crate::{Brute, Bvh, Grid, Input, Refit, Structure};
+use crate::{Brute, Bvh, Grid, Input, Probe, Refit, Structure};
 use nearfield_core::{
     Method, Plan, Report,
     engine::StepCost,
@@ -17,13 +17,14 @@ pub(super) enum Index {
 
 impl Index {
     pub fn new(plan: &Plan) -> Self {
-        match plan.method {
-            Method::Brute => Self::Brute(Brute::default()),
-            Method::Cell | Method::Cluster => Self::Grid(Grid::default()),
-            Method::RtList | Method::RtForces | Method::RtPerse | Method::RtBoxes => {
-                Self::Bvh(Box::new(Bvh::new(plan.images)))
-            }
-        }
+        let probe = match plan.method {
+            Method::Brute => return Self::Brute(Brute::default()),
+            Method::Cell | Method::Cluster => return Self::Grid(Grid::default()),
+            Method::RtList | Method::RtForces | Method::RtPerse | Method::RtBoxes => Probe::Point,
+            Method::RtSpheres => Probe::Axes,
+            Method::RtSquares => Probe::Edges,
+        };
+        Self::Bvh(Box::new(Bvh::with_probe(probe, plan.images)))
     }
 
     pub fn build(&mut self, input: &Input) {

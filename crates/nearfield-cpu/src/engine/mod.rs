@@ -92,6 +92,9 @@ impl Engine for CpuEngine {
     }
 
     fn memory_order(&self) -> Result<MemoryOrder> {
+        if let Some(loaded) = &self.loaded {
+            loaded.clusters.end();
+        }
         let order = |loaded: &Loaded| MemoryOrder { ids: loaded.state.id.clone(), sorted_at: loaded.sorted_at };
         Ok(self.loaded.as_deref().map(order).unwrap_or_default())
     }

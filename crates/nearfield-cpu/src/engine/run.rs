@@ -24,6 +24,9 @@ impl Loaded {
         dynamics.validate()?;
         self.dt = dynamics.dt;
         self.physics.cap = if dynamics.max_displacement > 0.0 { OVERLAP_CAP } else { f32::INFINITY };
+        if self.plan.method == Method::Cluster && !self.plan.deterministic && self.clusters.forget_if_ended() {
+            self.forces_valid = false;
+        }
         if !self.forces_valid || steps == 0 {
             let wanted = if steps == 0 { quantities } else { Quantities::FORCES };
             self.evaluate(wanted, from)?;

@@ -24,8 +24,11 @@ enum Suite {
 #[derive(Parser, Debug)]
 struct Arguments {
     /// What to run.
-    #[arg(long, value_enum, required = true)]
+    #[arg(long, value_enum, required_unless_present = "quick")]
     suite: Vec<Suite>,
+    /// The smallest melt and list, a few seconds, as JSON lines.
+    #[arg(long)]
+    quick: bool,
     /// Numbers of particles; the suite's own by default.
     #[arg(long, value_delimiter = ',')]
     n: Vec<usize>,
@@ -35,10 +38,13 @@ struct Arguments {
     /// Only cases whose name contains this.
     #[arg(long, default_value = "")]
     filter: String,
+    /// Skin of the methods that keep lists; the plan's default where it is not given.
+    #[arg(long)]
+    skin: Option<f32>,
     /// Seconds to spend on each measurement.
     #[arg(long, default_value_t = 0.4)]
     seconds: f64,
-    /// Leave out what a first step shows to take longer than this for one step, in seconds.
+    /// Where one evaluation of the forces takes longer than this, in seconds, it is the measurement.
     #[arg(long, default_value_t = 30.0)]
     patience: f64,
     /// Seconds after which no further measurement begins.
@@ -56,7 +62,12 @@ struct Arguments {
 }
 
 fn main() {
-    let arguments = Arguments::parse();
+    let mut arguments = Arguments::parse();
+    if arguments.quick {
+        arguments.suite = vec![Suite::Search, Suite::Melt];
+        arguments.n = vec![32_000];
+        arguments.seconds = 0.1;
+    }
     let engine = match CudaEngine::new(arguments.device) {
         Ok(engine) => engine,
         Err(reason) => {
@@ -64,7 +75,9 @@ fn main() {
             return;
         }
     };
-    println!("{}", engine.device());
+    if !arguments.quick {
+        println!("{}", engine.device());
+    }
     let mut bench = Bench::new(engine, &arguments);
     for suite in &arguments.suite {
         match suite {
@@ -86,6 +99,11 @@ fn asked(arguments: &Arguments, default: &[Method]) -> Vec<Method> {
     Method::ALL.iter().copied().filter(|method| wanted.contains(method)).collect()
 }
 
+fn plan(method: Method, arguments: &Arguments) -> Plan {
+    let plan = Plan::new(method);
+    Plan { skin: arguments.skin.unwrap_or(plan.skin), ..plan }
+}
+
 /// Paper A's table 2.
 fn methods(bench: &mut Bench, arguments: &Arguments) {
     for n in sizes(arguments, &[50_000, 1_000_000]) {
@@ -94,7 +112,7 @@ fn methods(bench: &mut Bench, arguments: &Arguments) {
                 for positions in cases::POSITIONS {
                     let case = cases::orcs(n, positions, radii, boundary);
                     for method in asked(arguments, &Method::ALL[1..]) {
-                        let plan = Plan { maintenance: Maintenance::Gradient, ..Plan::new(method) };
+                        let plan = Plan { maintenance: Maintenance::Gradient, ..plan(method, arguments) };
                         bench.steps("methods", &case, &plan);
                     }
                 }
@@ -121,7 +139,7 @@ fn melt(bench: &mut Bench, arguments: &Arguments) {
         let case = cases::melt(n);
         for method in asked(arguments, &Method::ALL[1..]) {
             for deterministic in [false, true] {
-                bench.steps("melt", &case, &Plan { deterministic, ..Plan::new(method) });
+                bench.steps("melt", &case, &Plan { deterministic, ..plan(method, arguments) });
             }
         }
     }
@@ -131,10 +149,10 @@ fn melt(bench: &mut Bench, arguments: &Arguments) {
 fn scaling(bench: &mut Bench, arguments: &Arguments) {
     for n in sizes(arguments, &[10_000, 100_000, 1_000_000, 10_000_000, 100_000_000]) {
         let case = cases::gas(n);
-        for method in asked(arguments, &[Method::Cell, Method::RtBoxes]) {
+        for method in asked(arguments, &[Method::Cell, Method::Cluster, Method::RtBoxes]) {
             let images: &[Images] = if method.uses_bvh() && n <= 1_000_000 { Images::ALL } else { &[Images::Gamma] };
             for &images in images {
-                if bench.steps("scaling", &case, &Plan { images, ..Plan::new(method) }) == Outcome::TooLong {
+                if bench.steps("scaling", &case, &Plan { images, ..plan(method, arguments) }) == Outcome::TooLong {
                     break;
                 }
             }

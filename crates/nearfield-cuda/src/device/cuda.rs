@@ -82,7 +82,9 @@ impl CudaDevice {
             None => {
                 let source = MODULES.iter().find(|m| m.name == module);
                 let source = source.ok_or_else(|| Error::Device(format!("there is no module {module}")))?;
-                let code = self.context.load_module(Ptx::from_src(source.ptx)).map_err(failed("loading kernels"))?;
+                let capability = self.context.compute_capability().map_err(failed("asking what the device can do"))?;
+                let ptx = Ptx::from_src(source.ptx_for(capability));
+                let code = self.context.load_module(ptx).map_err(failed("loading kernels"))?;
                 loaded.modules.insert(module, code.clone());
                 code
             }

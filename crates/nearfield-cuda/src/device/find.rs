@@ -26,20 +26,32 @@ pub struct DeviceInfo {
 /// Every GPU that can be used.
 ///
 /// # Errors
-/// [`Unavailable`] when there is none.
+/// [`Unavailable`] when there is none: why the first cannot be.
 pub fn devices() -> Result<Vec<DeviceInfo>, Unavailable> {
-    let count = count()?;
-    (0..count)
-        .map(|ordinal| {
-            let context = context(ordinal)?;
-            let driver = |error: DriverError| Unavailable::Driver(describe(error));
-            let (name, memory) = (context.name().map_err(driver)?, context.total_mem().map_err(driver)? as u64);
-            let compute_capability = context.compute_capability().map_err(driver)?;
-            let device = CudaDevice::on(context).map_err(|error| Unavailable::Driver(error.to_string()))?;
-            let ray_tracing = device.ray_tracing().map(|tracing| tracing.describe());
-            Ok(DeviceInfo { ordinal, name, memory, compute_capability, ray_tracing })
-        })
-        .collect()
+    let mut reason = None;
+    let mut usable = Vec::new();
+    for ordinal in 0..count()? {
+        match info(ordinal) {
+            Ok(device) => usable.push(device),
+            Err(error) => {
+                reason.get_or_insert(error);
+            }
+        }
+    }
+    match reason {
+        Some(reason) if usable.is_empty() => Err(reason),
+        _ => Ok(usable),
+    }
+}
+
+fn info(ordinal: usize) -> Result<DeviceInfo, Unavailable> {
+    let context = context(ordinal)?;
+    let driver = |error: DriverError| Unavailable::Driver(describe(error));
+    let (name, memory) = (context.name().map_err(driver)?, context.total_mem().map_err(driver)? as u64);
+    let compute_capability = context.compute_capability().map_err(driver)?;
+    let device = CudaDevice::on(context).map_err(|error| Unavailable::Driver(error.to_string()))?;
+    let ray_tracing = device.ray_tracing().map(|tracing| tracing.describe());
+    Ok(DeviceInfo { ordinal, name, memory, compute_capability, ray_tracing })
 }
 
 /// A context on a device whose driver and compute capability suffice.

@@ -1,15 +1,18 @@
 //! Ray tracing through OptiX, on the stream of a device.
 
-use super::{CudaDevice, structure::OptixStructure};
+use super::{
+    CudaDevice,
+    structure::{self, OptixStructure},
+};
 use crate::{
     Buffer, Gpu,
     gpu::{AccelerationStructure, RayTracing, Trace},
 };
 use nearfield_core::{Error, Result};
-use nearfield_kernels::{RAY_MODULES, kernels};
+use nearfield_kernels::{Primitive, RAY_MODULES, kernels};
 use optix_driver::{
     ContextOptions, DeviceContext, DeviceSpan, Hitgroup, LogCallback, LogLevel, Module, ModuleOptions, OptiX, Pipeline,
-    PipelineOptions, Program, ProgramGroup, SbtImage, SbtRecord, ShaderBindingTable, TraversableGraph,
+    PipelineOptions, Primitives, Program, ProgramGroup, SbtImage, SbtRecord, ShaderBindingTable, TraversableGraph,
 };
 use std::{
     collections::{HashMap, hash_map::Entry},
@@ -36,7 +39,7 @@ struct Loaded {
     parameters: Buffer<u8>,
 }
 
-/// A ray generation with its intersection program.
+/// A ray generation with the program of what its rays meet.
 struct Launchable {
     pipeline: Arc<Pipeline>,
     table: ShaderBindingTable,
@@ -94,7 +97,7 @@ impl RayTracing for Optix {
         let program = match programs.entry((trace.module, trace.raygen)) {
             Entry::Occupied(found) => found.into_mut(),
             Entry::Vacant(place) => {
-                let module = module(&self.context, modules, trace.module)?;
+                let module = module(&self.context, modules, &trace)?;
                 place.insert(Launchable::new(&self.context, &self.device, module, &trace)?)
             }
         };
@@ -108,6 +111,14 @@ impl RayTracing for Optix {
     }
 }
 
+impl Drop for Optix {
+    fn drop(&mut self) {
+        // Pipelines, modules and the context are destroyed in the CUDA context that is current, on whatever thread this
+        // is. A device that fails here has failed before and says so elsewhere.
+        let _ = self.device.bind();
+    }
+}
+
 impl Launchable {
     fn new(
         context: &Arc<DeviceContext>,
@@ -117,13 +128,27 @@ impl Launchable {
     ) -> Result<Self> {
         let linking = |error| failed(&format!("linking {}", trace.raygen), error);
         let entry = |kind: &str, name: &str| CString::new(format!("__{kind}__{name}")).expect("names are words");
-        let (raygen, intersection) = (entry("raygen", trace.raygen), entry("intersection", trace.intersection));
+        let raygen = entry("raygen", trace.raygen);
         let raygen = ProgramGroup::raygen(Program::new(module, &raygen)).map_err(linking)?;
         let miss = ProgramGroup::empty_miss(context).map_err(linking)?;
-        let intersection = Some(Program::new(module, &intersection));
-        let hit = ProgramGroup::hitgroup(context, Hitgroup { intersection, ..Hitgroup::default() }).map_err(linking)?;
+        let options = options(trace.primitive);
+        let (intersection, any_hit) = (entry("intersection", trace.hit), entry("anyhit", trace.hit));
+        let any_hit = Some(Program::new(module, &any_hit));
+        let spheres;
+        let hitgroup = match trace.primitive {
+            Primitive::Box => {
+                Hitgroup { intersection: Some(Program::new(module, &intersection)), ..Hitgroup::default() }
+            }
+            Primitive::Sphere => {
+                spheres = Module::builtin_spheres(context, ModuleOptions::default(), &options, structure::OPTIONS)
+                    .map_err(linking)?;
+                Hitgroup { any_hit, intersection: Some(Program::builtin(&spheres)), ..Hitgroup::default() }
+            }
+            Primitive::Triangle => Hitgroup { any_hit, ..Hitgroup::default() },
+        };
+        let hit = ProgramGroup::hitgroup(context, hitgroup).map_err(linking)?;
         let groups = [raygen, miss, hit];
-        let pipeline = Pipeline::new(context, &options(), &groups).map_err(linking)?;
+        let pipeline = Pipeline::new(context, &options, &groups).map_err(linking)?;
         let [raygen, miss, hit] = groups.each_ref().map(SbtRecord::new);
         let image = SbtImage::new(raygen, &[miss], &[hit]).map_err(linking)?;
         let gpu: Arc<dyn Gpu> = device.clone();
@@ -134,28 +159,34 @@ impl Launchable {
     }
 }
 
-/// The module of this name, compiled when it is first asked for.
+/// The module of a launch, compiled when it is first asked for.
 fn module<'a>(
     context: &Arc<DeviceContext>,
     modules: &'a mut HashMap<&'static str, Arc<Module>>,
-    name: &'static str,
+    trace: &Trace,
 ) -> Result<&'a Arc<Module>> {
+    let name = trace.module;
     match modules.entry(name) {
         Entry::Occupied(found) => Ok(found.into_mut()),
         Entry::Vacant(place) => {
             let source = RAY_MODULES.iter().find(|module| module.name == name);
             let source = source.ok_or_else(|| Error::Device(format!("there is no ray-tracing module {name}")))?;
-            let module = Module::from_ptx(context, source.ptx, ModuleOptions::default(), &options());
+            let module = Module::from_ptx(context, source.ptx, ModuleOptions::default(), &options(trace.primitive));
             Ok(place.insert(module.map_err(|error| failed(&format!("compiling {name}"), error))?))
         }
     }
 }
 
-/// Of all modules and pipelines: rays are traced against boxes or against instances of boxes.
-fn options() -> PipelineOptions {
+/// Of modules and pipelines whose rays are traced against such primitives, or against instances of a structure of them.
+fn options(primitive: Primitive) -> PipelineOptions {
     PipelineOptions {
         graph: TraversableGraph::Both,
         payload_words: kernels::PAYLOAD_WORDS,
+        primitives: match primitive {
+            Primitive::Box => Primitives::CUSTOM,
+            Primitive::Sphere => Primitives::SPHERES,
+            Primitive::Triangle => Primitives::TRIANGLES,
+        },
         ..PipelineOptions::default()
     }
 }

@@ -3,21 +3,21 @@
 use super::{CudaDevice, optix::failed};
 use crate::{
     Buffer, Gpu,
-    gpu::{Aabb, AccelerationStructure},
+    gpu::{Aabb, AccelerationStructure, Bodies},
 };
 use nearfield_core::Result;
-use nearfield_kernels::Ptr;
+use nearfield_kernels::Float4;
 use optix_driver::{
-    Aabbs, AccelOptions, AnyHit, BuildInput, DeviceContext, DeviceSpan, Instance, Instances, Preference,
-    TraversableHandle,
+    Aabbs, AccelOptions, AnyHit, BuildInput, DeviceContext, DeviceSpan, Instance, Instances, Preference, SphereRadii,
+    Spheres, TraversableHandle, Triangles,
 };
 use std::sync::Arc;
 
 /// A structure is traced far more often than it is built, and refitted in between.
-const OPTIONS: AccelOptions =
+pub(super) const OPTIONS: AccelOptions =
     AccelOptions { allow_update: true, allow_compaction: false, preference: Preference::FastTrace };
 
-/// A structure over boxes or instances.
+/// A structure over bodies or instances.
 pub(super) struct OptixStructure {
     context: Arc<DeviceContext>,
     device: Arc<CudaDevice>,
@@ -45,7 +45,7 @@ impl OptixStructure {
 
     /// # Safety
     /// What `input` points to is valid until the work is done.
-    unsafe fn build(&mut self, input: BuildInput) -> Result<()> {
+    unsafe fn build_input(&mut self, input: BuildInput) -> Result<()> {
         let stream = self.device.bind()?;
         let building = |error| failed("building an acceleration structure", error);
         let sizes = self.context.accel_sizes(OPTIONS, &[input]).map_err(building)?;
@@ -60,11 +60,11 @@ impl OptixStructure {
     }
 
     /// # Safety
-    /// As [`OptixStructure::build`]; the last build had an input of this kind and size.
-    unsafe fn update(&mut self, input: BuildInput) -> Result<()> {
+    /// As [`OptixStructure::build_input`]; the last build had an input of this kind and size.
+    unsafe fn update_input(&mut self, input: BuildInput) -> Result<()> {
         let stream = self.device.bind()?;
         let (scratch, output) = (span(&self.scratch), span(&self.output));
-        // SAFETY: as in `build`, which made room for updates too.
+        // SAFETY: as in `build_input`, which made room for updates too.
         let handle = unsafe { self.context.accel_update(stream.cast(), OPTIONS, &[input], scratch, output) };
         self.handle = handle.map_err(|error| failed("refitting an acceleration structure", error))?.0;
         Ok(())
@@ -72,14 +72,14 @@ impl OptixStructure {
 }
 
 impl AccelerationStructure for OptixStructure {
-    unsafe fn build_boxes(&mut self, boxes: Ptr<Aabb>, n: u32) -> Result<()> {
-        // SAFETY: the caller vouches for the boxes.
-        unsafe { self.build(around(boxes, n)) }
+    unsafe fn build(&mut self, bodies: Bodies, n: u32) -> Result<()> {
+        // SAFETY: the caller vouches for the bodies.
+        unsafe { self.build_input(input(bodies, n)) }
     }
 
-    unsafe fn refit_boxes(&mut self, boxes: Ptr<Aabb>, n: u32) -> Result<()> {
-        // SAFETY: the caller vouches for the boxes, and for their number.
-        unsafe { self.update(around(boxes, n)) }
+    unsafe fn refit(&mut self, bodies: Bodies, n: u32) -> Result<()> {
+        // SAFETY: the caller vouches for the bodies, their kind and number.
+        unsafe { self.update_input(input(bodies, n)) }
     }
 
     fn build_instances(&mut self, of: &dyn AccelerationStructure, translations: &[[f32; 3]]) -> Result<()> {
@@ -94,7 +94,7 @@ impl AccelerationStructure for OptixStructure {
         let count = self.instances.len() as u32;
         let input = BuildInput::Instances(Instances { buffer: self.records.ptr().address(), count });
         // SAFETY: the records are this structure's own; their number is that of the last build where they are the same.
-        unsafe { if unchanged { self.update(input) } else { self.build(input) } }
+        unsafe { if unchanged { self.update_input(input) } else { self.build_input(input) } }
     }
 
     fn handle(&self) -> u64 {
@@ -106,9 +106,38 @@ impl AccelerationStructure for OptixStructure {
     }
 }
 
-fn around(boxes: Ptr<Aabb>, n: u32) -> BuildInput {
-    let stride = size_of::<Aabb>() as u32;
-    BuildInput::Aabbs(Aabbs { buffer: boxes.address(), count: n, stride, any_hit: AnyHit::Never })
+impl Drop for OptixStructure {
+    fn drop(&mut self) {
+        // As for the context, whose last owner this may be.
+        let _ = self.device.bind();
+    }
+}
+
+/// The driver's description of bodies. Programs of built-in ones must run once for each: they count what they see.
+fn input(bodies: Bodies, n: u32) -> BuildInput {
+    let any_hit = AnyHit::OncePerPrimitive;
+    match bodies {
+        Bodies::Boxes(boxes) => BuildInput::Aabbs(Aabbs {
+            buffer: boxes.address(),
+            count: n,
+            stride: size_of::<Aabb>() as u32,
+            any_hit: AnyHit::Never,
+        }),
+        Bodies::Spheres { center, radius } => BuildInput::Spheres(Spheres {
+            centers: center.address(),
+            count: n,
+            stride: size_of::<Float4>() as u32,
+            radii: SphereRadii::Single { buffer: radius.address() },
+            any_hit,
+        }),
+        Bodies::Triangles(triangles) => BuildInput::Triangles(Triangles {
+            vertices: triangles.address(),
+            num_vertices: 3 * n,
+            vertex_stride: size_of::<[f32; 3]>() as u32,
+            indices: None,
+            any_hit,
+        }),
+    }
 }
 
 fn span(buffer: &Buffer<u8>) -> DeviceSpan {

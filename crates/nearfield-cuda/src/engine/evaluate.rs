@@ -6,7 +6,7 @@ use super::{
     order::{self, MortonOrder},
     structure::Query,
 };
-use crate::{grid::Grid, tracing::Step};
+use crate::{cluster::StepQuery, grid::Grid, tracing::Step};
 use nearfield_core::{
     Order, Quantities, Result, StepCost,
     maintenance::{Action, Motion},
@@ -16,12 +16,17 @@ impl Loaded {
     /// Enqueues forces, and what else is asked for, at the present positions, which belong to `step`.
     pub fn evaluate(&mut self, quantities: Quantities, step: u64) -> Result<()> {
         self.prepare(step)?;
+        self.query(quantities)
+    }
+
+    /// Enqueues forces at positions that the structure was prepared for.
+    fn query(&mut self, quantities: Quantities) -> Result<()> {
         self.results.prepare(self.state.len(), quantities.energy)?;
         let Self { plan, physics, state, results, structure, report, .. } = self;
         let scene = physics.scene(state);
         let query = Query { plan, physics, state, results, energy: quantities.energy, report };
         structure.evaluate(query, &scene)?;
-        self.account()
+        self.account(1)
     }
 
     /// ORCS-persé (paper A, section 3.2.1): the pass that finds a particle's force also moves it through the rest of
@@ -40,12 +45,35 @@ impl Loaded {
         let scene = self.physics.scene(&self.state);
         self.structure.advance(&self.plan, &scene, self.results.layout(), &movement)?;
         std::mem::swap(&mut self.state.moving.position, &mut self.next_position);
-        self.account()
+        self.account(1)
     }
 
-    /// Books an evaluation whose query has been enqueued.
-    fn account(&mut self) -> Result<()> {
-        self.report.evaluations += 1;
+    /// Forces at the positions of `step`, and steps by them: as many as one list serves for and `before` allows, or none
+    /// where `cluster` keeps no list. Gives the step whose positions the particles are at then.
+    pub fn evaluate_and_step(&mut self, integrator: &Integrator, step: u64, before: u64) -> Result<u64> {
+        self.prepare(step)?;
+        loop {
+            let Self { physics, state, structure, next_position, totalizer, report, .. } = self;
+            let clusters = structure.clusters_mut().expect("only clusters step by lists");
+            let kernels = clusters.step_kernels();
+            let Some((list, grid)) = clusters.list_and_grid() else {
+                self.query(Quantities::FORCES)?;
+                return Ok(step);
+            };
+            let (integrator, status) = (integrator.layout(), totalizer.status().ptr());
+            let query = StepQuery { physics, state, next: next_position, integrator, status, kernels };
+            let made = list.steps(query, grid, step, before - step)?;
+            if made > 0 {
+                self.account(made)?;
+                return Ok(step + made);
+            }
+            clusters.settle(physics, state, report)?;
+        }
+    }
+
+    /// Books evaluations whose query has been enqueued.
+    fn account(&mut self, evaluations: u64) -> Result<()> {
+        self.report.evaluations += evaluations;
         let wait = self.policy.needs_cost() && self.plan.method.uses_bvh();
         let costs = self.timeline.end(&*self.gpu, &mut self.report, wait)?;
         self.book(costs);
@@ -56,19 +84,21 @@ impl Loaded {
     pub fn prepare(&mut self, step: u64) -> Result<()> {
         let gpu = self.gpu.clone();
         self.timeline.begin(&*gpu, self.record_history)?;
-        if self.built && self.structure.is_fresh(&self.physics.scene(&self.state))? {
+        if self.built && self.structure.is_fresh(&self.physics, &self.state)? {
             return Ok(());
         }
         let action = self.next_action()?;
+        if self.structure.needs_plan() && self.planned_at.is_none_or(|then| step >= then + self.plan_interval) {
+            let much_as_before = self.structure.plan(&self.surveyor.survey(&self.state)?, &self.physics);
+            let interval = if much_as_before { 2 * self.plan_interval } else { order::INTERVAL };
+            self.plan_interval = interval.min(order::LONGEST_PLAN);
+            self.planned_at = Some(step);
+        }
         if action == Action::Build && self.sorted_at.is_none_or(|then| step >= then + order::INTERVAL) {
             self.reorder()?;
             self.sorted_at = Some(step);
         }
-        if self.structure.needs_plan() && self.planned_at.is_none_or(|then| step >= then + order::INTERVAL) {
-            self.structure.plan(&self.surveyor.survey(&self.state)?, &self.physics);
-            self.planned_at = Some(step);
-        }
-        let updated = self.structure.update(action, &self.physics.scene(&self.state))?;
+        let updated = self.structure.update(action, &self.physics, &mut self.state, &mut self.report)?;
         self.report.forced_builds += u64::from(updated.forced);
         if updated.built {
             self.report.builds += 1;
@@ -100,7 +130,10 @@ impl Loaded {
     }
 
     fn reorder(&mut self) -> Result<()> {
-        let Self { gpu, state, physics, surveyor, .. } = self;
+        let Self { gpu, state, physics, surveyor, structure, .. } = self;
+        if let (Some(clusters), Order::Morton | Order::Cell) = (structure.clusters_mut(), self.plan.order) {
+            return clusters.reorder(physics, state, &mut self.results.force);
+        }
         match self.plan.order {
             Order::None => Ok(()),
             Order::Morton => {

@@ -6,7 +6,9 @@ use crate::{
     grid::{self, Candidates, ListQuery},
     tracing::{RowNumbers, RowQuery, Scene},
 };
-use nearfield_core::{ListKind, ListRequest, NeighborList, Particles, Result, maintenance::Action, predicate};
+use nearfield_core::{
+    ListKind, ListRequest, Method, NeighborList, Particles, Plan, Result, maintenance::Action, predicate,
+};
 
 /// What lists need beside what forces do.
 pub(crate) struct Lister {
@@ -29,7 +31,8 @@ impl Loaded {
                 Structure::Brute => unsafe { grid::list(&**scene.gpu, all(scene), &query, list) },
                 // SAFETY: as above.
                 Structure::Cells(grid) => unsafe { grid::list(&**scene.gpu, Candidates::Cells(grid), &query, list) },
-                Structure::Boxes(bvh) | Structure::List(bvh, _) => bvh.list(scene, rows, images, list),
+                Structure::Clusters(_) => unreachable!("listers have cells instead"),
+                Structure::Bodies(bvh) | Structure::List(bvh, _) => bvh.list(scene, rows, images, list),
             }
         })?;
         Ok(&self.lister.as_ref().expect("it was just used").list)
@@ -46,7 +49,8 @@ impl Loaded {
                 Structure::Brute => unsafe { grid::count(&**scene.gpu, all(scene), &query, list) },
                 // SAFETY: as above.
                 Structure::Cells(grid) => unsafe { grid::count(&**scene.gpu, Candidates::Cells(grid), &query, list) },
-                Structure::Boxes(bvh) | Structure::List(bvh, _) => bvh.count(scene, rows, list),
+                Structure::Clusters(_) => unreachable!("listers have cells instead"),
+                Structure::Bodies(bvh) | Structure::List(bvh, _) => bvh.count(scene, rows, list),
             }
         })?;
         Ok(&self.lister.as_ref().expect("it was just used").list.count)
@@ -83,7 +87,9 @@ impl Loaded {
     fn with_lister(&mut self, body: impl FnOnce(&mut Lister, &Buffer<u32>, &Scene) -> Result<()>) -> Result<()> {
         let Self { gpu, plan, physics, state, surveyor, lister, report, .. } = self;
         if lister.is_none() {
-            let structure = Structure::new(gpu, plan, physics)?;
+            // Clusters find lists as cells do.
+            let method = if plan.method == Method::Cluster { Method::Cell } else { plan.method };
+            let structure = Structure::new(gpu, &Plan { method, ..*plan }, physics)?;
             *lister = Some(Lister { structure, list: DeviceList::new(gpu), planned_at: None });
         }
         let lister = lister.as_mut().expect("it was just made");
@@ -95,8 +101,8 @@ impl Loaded {
         let scene = physics.scene(state);
         match &mut lister.structure {
             // Without the skin that forces would want.
-            Structure::Boxes(bvh) | Structure::List(bvh, _) => bvh.update(Action::Build, &scene).map(drop)?,
-            structure => structure.update(Action::Build, &scene).map(drop)?,
+            Structure::Bodies(bvh) | Structure::List(bvh, _) => bvh.update(Action::Build, &scene).map(drop)?,
+            structure => structure.update_in_place(Action::Build, &scene).map(drop)?,
         }
         body(lister, &state.id, &scene)
     }

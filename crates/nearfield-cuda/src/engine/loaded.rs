@@ -1,7 +1,7 @@
 //! A loaded system.
 
 use super::{
-    list::Lister, motion::Reference, physics::Physics, results::Results, state::State, structure::Structure,
+    list::Lister, motion::Reference, order, physics::Physics, results::Results, state::State, structure::Structure,
     survey::Surveyor, timeline::Timeline, totals::Totalizer,
 };
 use crate::{Buffer, Gpu};
@@ -37,6 +37,8 @@ pub(crate) struct Loaded {
     pub sorted_at: Option<u64>,
     /// Step at which the choice of cells was last made anew.
     pub planned_at: Option<u64>,
+    /// Steps to the next time.
+    pub plan_interval: u64,
 }
 
 impl Loaded {
@@ -61,6 +63,7 @@ impl Loaded {
             forces_valid: false,
             sorted_at: None,
             planned_at: None,
+            plan_interval: order::INTERVAL,
             physics,
         })
     }

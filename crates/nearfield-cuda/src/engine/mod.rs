@@ -7,16 +7,16 @@ mod list;
 mod loaded;
 pub(crate) mod motion;
 mod order;
-mod physics;
+pub(crate) mod physics;
 mod results;
 mod run;
-mod state;
+pub(crate) mod state;
 mod structure;
-mod survey;
+pub(crate) mod survey;
 mod timeline;
 mod totals;
 
-use crate::{Buffer, CudaDevice, DeviceList, Gpu, Unavailable};
+use crate::{Buffer, CudaDevice, DeviceList, Gpu, Unavailable, Variant};
 use loaded::Loaded;
 use nearfield_core::{
     Dynamics, Engine, Error, ListRequest, NeighborList, Particles, PerParticle, Plan, Quantities, Report, Result,
@@ -62,6 +62,11 @@ impl CudaEngine {
         self.loaded()?.count_on_device()
     }
 
+    /// What `cluster` has chosen for the loaded system, once forces have been computed by it.
+    pub fn cluster_variant(&self) -> Option<Variant> {
+        self.loaded.as_ref()?.structure.cluster_variant()
+    }
+
     /// Waits for the device.
     ///
     /// # Errors
@@ -81,9 +86,6 @@ impl Engine for CudaEngine {
     }
 
     fn supports(&self, system: &System, plan: &Plan) -> Result<()> {
-        if plan.method == nearfield_core::Method::Cluster {
-            return Err(Error::Unsupported { method: plan.method, reason: "the GPU has no clusters yet; use cell" });
-        }
         if !system.radii.is_uniform() && !plan.method.supports_variable_radii() {
             return Err(Error::Unsupported {
                 method: plan.method,

@@ -9,6 +9,9 @@ use std::sync::Arc;
 /// Steps between reorderings: locality decays slowly.
 pub(crate) const INTERVAL: u64 = 100;
 
+/// Most steps between surveys, each of which waits for the device; as many as above, doubled while nothing changes.
+pub(crate) const LONGEST_PLAN: u64 = 16 * INTERVAL;
+
 /// The order along the Morton curve, by one counting sort into as many cells as there are particles.
 pub(crate) struct MortonOrder {
     gpu: Arc<dyn Gpu>,

@@ -21,18 +21,36 @@ impl Loaded {
             self.forces_valid = false;
             self.move_all(&integrator, Half::Start, from)?;
             let fused = self.plan.method == Method::RtPerse && !integrator.rescales();
-            for step in from + 1..=last {
-                let wanted = if step == last { quantities } else { Quantities::FORCES };
-                if fused && step < last {
+            let by_list = self.steps_by_list() && !integrator.rescales();
+            let mut step = from + 1;
+            while step < last {
+                if by_list {
+                    let reached = self.evaluate_and_step(&integrator, step, last)?;
+                    if reached > step {
+                        step = reached;
+                        continue;
+                    }
+                } else if fused {
                     self.evaluate_and_move(&integrator, step)?;
+                    step += 1;
+                    continue;
                 } else {
-                    self.evaluate(wanted, step)?;
-                    self.finish_step(&integrator, step - from - 1, step, step == last)?;
+                    self.evaluate(Quantities::FORCES, step)?;
                 }
+                self.finish_step(&integrator, step - from - 1, step, false)?;
+                step += 1;
             }
+            self.evaluate(quantities, last)?;
+            self.finish_step(&integrator, steps - 1, last, true)?;
             self.forces_valid = true;
         }
         self.totals(quantities, from + steps)
+    }
+
+    /// Whether forces and steps are computed together where there is a list of clusters. Costs are recorded by step, and
+    /// order-independent sums have kernels of their own.
+    fn steps_by_list(&self) -> bool {
+        self.plan.method == Method::Cluster && !self.plan.deterministic && !self.record_history
     }
 
     /// Second half kick of `step`, thermostat, and the beginning of the step after unless this was the last.

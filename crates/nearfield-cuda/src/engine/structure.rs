@@ -2,9 +2,10 @@
 
 use super::{physics::Physics, results::Results, state::State, survey::Sample};
 use crate::{
-    Gpu,
-    grid::{self, Candidates, ForceQuery, Grid},
-    tracing::{Bvh, Outcome, Scene, Step, StoredList, Sums, Updated},
+    Gpu, Variant,
+    cluster::Clusters,
+    grid::{self, Candidates, ForceQuery, Grid, Pairs},
+    tracing::{Bvh, Outcome, Probe, Scene, Step, StoredList, Sums, Updated},
 };
 use nearfield_core::{Method, Plan, Report, Result, maintenance::Action};
 use nearfield_kernels::layouts;
@@ -26,48 +27,76 @@ pub(crate) enum Structure {
     Brute,
     /// Cells.
     Cells(Box<Grid>),
-    /// Boxes, traced for forces.
-    Boxes(Bvh),
+    /// Cells, and lists where they pay.
+    Clusters(Box<Clusters>),
+    /// Bodies, traced for forces.
+    Bodies(Box<Bvh>),
     /// Boxes, traced for a list.
-    List(Bvh, StoredList),
+    List(Box<Bvh>, Box<StoredList>),
 }
 
 impl Structure {
     pub fn new(gpu: &Arc<dyn Gpu>, plan: &Plan, physics: &Physics) -> Result<Self> {
+        let bvh = |probe| Bvh::new(gpu, probe, plan.images).map(Box::new);
         Ok(match plan.method {
             Method::Brute => Self::Brute,
             Method::Cell => Self::Cells(Box::new(Grid::new(gpu))),
-            Method::Cluster => unreachable!("refused by supports"),
-            Method::RtForces | Method::RtPerse | Method::RtBoxes => Self::Boxes(Bvh::new(gpu, plan.images)?),
+            Method::Cluster => Self::Clusters(Box::new(Clusters::new(gpu, plan, physics))),
+            Method::RtForces | Method::RtPerse | Method::RtBoxes => Self::Bodies(bvh(Probe::Point)?),
+            Method::RtSpheres => Self::Bodies(bvh(Probe::Axes)?),
+            Method::RtSquares => Self::Bodies(bvh(Probe::Edges)?),
             Method::RtList => {
-                Self::List(Bvh::new(gpu, plan.images)?, StoredList::new(gpu, plan, &physics.sim_box, physics.largest))
+                let list = StoredList::new(gpu, plan, &physics.sim_box, physics.largest);
+                Self::List(bvh(Probe::Point)?, Box::new(list))
             }
         })
     }
 
     /// Whether what the last update made still serves at the present positions. To be asked once an evaluation.
-    pub fn is_fresh(&mut self, scene: &Scene) -> Result<bool> {
+    pub fn is_fresh(&mut self, physics: &Physics, state: &State) -> Result<bool> {
         match self {
-            Self::List(_, list) => list.is_fresh(scene),
+            Self::List(_, list) => list.is_fresh(&physics.scene(state)),
+            Self::Clusters(clusters) => clusters.is_fresh(physics, state),
             _ => Ok(false),
         }
     }
 
     /// Whether [`Structure::plan`] is to be called now and then.
     pub fn needs_plan(&self) -> bool {
-        matches!(self, Self::Cells(_))
+        matches!(self, Self::Cells(_) | Self::Clusters(_))
     }
 
-    /// Makes choices that depend on how the particles lie.
-    pub fn plan(&mut self, sample: &Sample, physics: &Physics) {
-        if let Self::Cells(grid) = self {
-            grid.plan(&physics.survey(sample));
+    /// Makes choices that depend on how the particles lie. Gives whether they lie much as before.
+    pub fn plan(&mut self, sample: &Sample, physics: &Physics) -> bool {
+        match self {
+            Self::Cells(grid) => grid.plan(&physics.survey(sample)),
+            Self::Clusters(clusters) => clusters.plan(sample, physics),
+            _ => true,
         }
     }
 
-    /// Builds or refits.
-    pub fn update(&mut self, action: Action, scene: &Scene) -> Result<Updated> {
+    /// Builds or refits; particles may get other places in memory.
+    pub fn update(
+        &mut self,
+        action: Action,
+        physics: &Physics,
+        state: &mut State,
+        report: &mut Report,
+    ) -> Result<Updated> {
+        if let Self::Clusters(clusters) = self {
+            clusters.build(physics, state, report)?;
+            return Ok(Updated { built: true, forced: false });
+        }
+        self.update_in_place(action, &physics.scene(state))
+    }
+
+    /// Builds or refits a structure that leaves particles where they are.
+    ///
+    /// # Panics
+    /// For clusters, which do not.
+    pub fn update_in_place(&mut self, action: Action, scene: &Scene) -> Result<Updated> {
         match self {
+            Self::Clusters(_) => unreachable!("clusters are no structure of lists"),
             Self::Brute => Ok(Updated { built: true, forced: false }),
             Self::Cells(grid) => {
                 let particles = scene.particles;
@@ -75,7 +104,7 @@ impl Structure {
                 unsafe { grid.build(particles.position, particles.n as usize, scene.law.variable != 0)? };
                 Ok(Updated { built: true, forced: false })
             }
-            Self::Boxes(bvh) => bvh.update(action, scene),
+            Self::Bodies(bvh) => bvh.update(action, scene),
             Self::List(bvh, list) => {
                 list.invalidate();
                 bvh.update(action, &Scene { skin: list.skin(), ..*scene })
@@ -92,10 +121,22 @@ impl Structure {
                 by_candidates(candidates, plan, physics, state, results, energy)
             }
             Self::Cells(grid) => by_candidates(Candidates::Cells(grid), plan, physics, state, results, energy),
-            Self::Boxes(bvh) if plan.method == Method::RtForces => {
+            Self::Clusters(clusters) => {
+                clusters.settle(physics, state, report)?;
+                let scatters = clusters.scatters();
+                if scatters {
+                    results.zero(plan.deterministic)?;
+                }
+                clusters.forces(physics, state, results.layout(), energy, report)?;
+                if scatters && plan.deterministic {
+                    results.finish_exact(&**state.gpu(), &physics.law)?;
+                }
+                Ok(())
+            }
+            Self::Bodies(bvh) if plan.method == Method::RtForces => {
                 scatter(bvh, Sums { exact: plan.deterministic, energy }, results, scene)
             }
-            Self::Boxes(bvh) => bvh.gather(scene, Sums { exact: plan.deterministic, energy }, results.layout()),
+            Self::Bodies(bvh) => bvh.gather(scene, Sums { exact: plan.deterministic, energy }, results.layout()),
             Self::List(bvh, list) => {
                 let sums = Sums { exact: plan.deterministic, energy };
                 let mut outcome = list.gather(bvh, scene, sums, results.layout(), plan.memory_budget, report)?;
@@ -112,10 +153,20 @@ impl Structure {
     /// Enqueues the forces and a step of all particles.
     ///
     /// # Panics
-    /// Where boxes are not traced for forces.
+    /// Where bodies are not traced for forces.
     pub fn advance(&self, plan: &Plan, scene: &Scene, results: layouts::Results, step: &Step) -> Result<()> {
-        let Self::Boxes(bvh) = self else { unreachable!("{} does not trace boxes for forces", plan.method) };
+        let Self::Bodies(bvh) = self else { unreachable!("{} does not trace for forces", plan.method) };
         bvh.advance(scene, plan.deterministic, results, step)
+    }
+
+    /// The clusters of the method `cluster`.
+    pub fn clusters_mut(&mut self) -> Option<&mut Clusters> {
+        if let Self::Clusters(clusters) = self { Some(clusters) } else { None }
+    }
+
+    /// What clusters have chosen.
+    pub fn cluster_variant(&self) -> Option<Variant> {
+        if let Self::Clusters(clusters) = self { Some(clusters.variant()) } else { None }
     }
 
     /// Bytes held on the device.
@@ -123,7 +174,8 @@ impl Structure {
         match self {
             Self::Brute => 0,
             Self::Cells(grid) => grid.bytes(),
-            Self::Boxes(bvh) => bvh.bytes(),
+            Self::Clusters(clusters) => clusters.bytes(),
+            Self::Bodies(bvh) => bvh.bytes(),
             Self::List(bvh, list) => bvh.bytes() + list.bytes(),
         }
     }
@@ -138,7 +190,7 @@ fn by_candidates(
     results: &mut Results,
     energy: bool,
 ) -> Result<()> {
-    let (gpu, scatters) = (state.gpu(), candidates.scatters());
+    let (gpu, scatters) = (state.gpu(), candidates.scatters(Pairs::Directed));
     if scatters {
         results.zero(plan.deterministic)?;
     }
@@ -149,6 +201,7 @@ fn by_candidates(
         results: results.layout(),
         energy,
         exact: plan.deterministic,
+        pairs: Pairs::Directed,
     };
     // SAFETY: the arrays of particles and results have n elements each.
     unsafe { grid::forces(&**gpu, candidates, &query)? };

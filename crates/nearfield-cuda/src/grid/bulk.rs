@@ -63,9 +63,14 @@ impl Bulk {
 
 /// The range of all but the ends of `x`, widened, but within that of all; zeros when there are none.
 fn inner_range(mut x: Vec<f64>) -> (f64, f64) {
-    x.sort_unstable_by(f64::total_cmp);
-    let (Some(&first), Some(&last)) = (x.first(), x.last()) else { return (0.0, 0.0) };
-    let (lo, hi) = (x[x.len() / TRIM], x[x.len() - 1 - x.len() / TRIM]);
+    let n = x.len();
+    if x.is_empty() {
+        return (0.0, 0.0);
+    }
+    let (first, last) = x.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), &x| (lo.min(x), hi.max(x)));
+    let mut at = |rank: usize| *x.select_nth_unstable_by(rank, f64::total_cmp).1;
+    let trimmed = n / TRIM;
+    let (lo, hi) = (at(trimmed), at(n - 1 - trimmed));
     let margin = MARGIN * (hi - lo);
     ((lo - margin).max(first), (hi + margin).min(last))
 }

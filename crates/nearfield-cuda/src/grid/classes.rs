@@ -122,7 +122,7 @@ mod tests {
         radii.resize(8100, 250.0);
         let classes = divide(radii, 250.0, &bulk(810_000));
         assert_eq!(classes.len(), 2, "{classes:?}");
-        assert_eq!((classes[0].largest, classes[1].largest), (1.0, 250.0));
+        assert!(classes[0].largest < 1.2 && classes[1].largest == 250.0, "{classes:?}");
         assert_eq!((classes[0].n, classes[1].n), (800_000.0, 10_000.0));
     }
 

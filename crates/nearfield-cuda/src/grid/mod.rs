@@ -4,9 +4,10 @@ mod bulk;
 mod classes;
 mod plan;
 mod query;
+mod width;
 
 pub use plan::{CellPlan, Survey};
-pub use query::{Candidates, ForceQuery, ListQuery, count, forces, list};
+pub use query::{Candidates, ForceQuery, ListQuery, Pairs, count, forces, list};
 
 use crate::{Buffer, Gpu, gpu::launch, scan::Scan};
 use nearfield_core::Result;
@@ -48,9 +49,15 @@ impl Grid {
         }
     }
 
-    /// Takes other cells from the next build on.
-    pub fn plan(&mut self, survey: &Survey) {
-        self.plan = CellPlan::new(survey);
+    /// Takes other cells from the next build on. Gives whether they are for much the same surroundings as before.
+    pub fn plan(&mut self, survey: &Survey) -> bool {
+        self.take(CellPlan::new(survey))
+    }
+
+    /// The same from a plan.
+    pub(crate) fn take(&mut self, plan: CellPlan) -> bool {
+        let before = std::mem::replace(&mut self.plan, plan);
+        self.plan.is_much_as(&before)
     }
 
     /// Sorts `n` particles by the cells of [`Grid::plan`], which must have been called. `variable`: radii are in w.
@@ -99,6 +106,21 @@ impl Grid {
             slot: self.slot.ptr(),
             particle: self.particle.ptr(),
         }
+    }
+
+    /// The same for particles that have been put in the order of the cells, at these positions.
+    pub(crate) fn layout_in_memory_order(&self, position: Ptr<Float4>) -> layouts::Grid {
+        layouts::Grid { slot: position, particle: Ptr::NULL, ..self.layout() }
+    }
+
+    /// Positions in the order of the cells, as they were sorted.
+    pub(crate) fn slots(&self) -> Ptr<Float4> {
+        self.slot.ptr()
+    }
+
+    /// What kernels must add to ranges so that roundings lose no candidate, \[length\].
+    pub(crate) fn slack(&self) -> f32 {
+        self.plan.slack
     }
 
     /// Place of the particle in each slot: the order of the cells.

@@ -1,12 +1,12 @@
 //! Size and number of the cells of each class.
 
-use super::classes::Class;
-use super::{bulk::Bulk, classes};
+use super::{
+    bulk::Bulk,
+    classes::{self, Class},
+    width::pencil_width,
+};
 use nearfield_core::SimBox;
 use nearfield_kernels::{Float4, layouts::CellClass};
-
-/// Particles to a cube of the width of a pencil, at the density they see.
-const OCCUPANCY: f64 = 8.0;
 
 /// Cells along x to the width of a pencil.
 const CELLS_PER_WIDTH: f64 = 4.0;
@@ -14,6 +14,9 @@ const CELLS_PER_WIDTH: f64 = 4.0;
 /// Most cells to a particle, and in any case: where particles cluster, cells are coarser than these would like.
 const CELLS_PER_PARTICLE: f64 = 4.0;
 const LEAST_CELLS: f64 = 64.0;
+
+/// Ratio of expected neighbours that a sample does not tell from none.
+const SIMILAR: f64 = 1.1;
 
 /// Most cells along an axis: kernels compute them in f32.
 const MOST_ALONG: f64 = (1 << 22) as f64;
@@ -42,6 +45,8 @@ pub struct CellPlan {
     pub n_cells: usize,
     /// What kernels must add to ranges so that roundings lose no candidate, \[length\].
     pub slack: f32,
+    /// Expected number of particles within the largest range of one of them.
+    pub neighbors: f64,
 }
 
 impl CellPlan {
@@ -52,13 +57,22 @@ impl CellPlan {
             Some(cutoff) => classes::single(survey.n, cutoff),
             None => classes::divide(survey.sample.iter().map(|p| p.w).collect(), survey.largest, &bulk),
         };
-        let mut plan = Self { slack: slack(&bulk, survey.sim_box), ..Self::default() };
+        let neighbors = survey.n as f64 * bulk.share_within(f64::from(survey.largest));
+        let mut plan = Self { slack: slack(&bulk, survey.sim_box), neighbors, ..Self::default() };
         for class in &classes {
             let cells = lay_out(class, &bulk, plan.n_cells);
             plan.n_cells += cells.n.iter().map(|&n| n as usize).product::<usize>();
             plan.classes.push(cells);
         }
         plan
+    }
+}
+
+impl CellPlan {
+    /// Whether particles have about as many neighbours in as many classes.
+    pub(super) fn is_much_as(&self, other: &Self) -> bool {
+        let ratio = self.neighbors / other.neighbors;
+        self.classes.len() == other.classes.len() && (1.0 / SIMILAR..SIMILAR).contains(&ratio)
     }
 }
 
@@ -74,7 +88,7 @@ fn slack(bulk: &Bulk, sim_box: &SimBox) -> f32 {
 
 fn lay_out(class: &Class, bulk: &Bulk, first_cell: usize) -> CellClass {
     let most = CELLS_PER_PARTICLE * class.n + LEAST_CELLS;
-    let mut width = pencil_width(class.n * bulk.clustering / OCCUPANCY, bulk.length);
+    let mut width = pencil_width(class.n * bulk.clustering, bulk.length, f64::from(class.largest));
     let along = |width: f64| {
         let n = |length: f64, cell: f64| (length / cell).floor().clamp(1.0, MOST_ALONG);
         let [x, y, z] = bulk.length;
@@ -97,22 +111,6 @@ fn lay_out(class: &Class, bulk: &Bulk, first_cell: usize) -> CellClass {
     }
 }
 
-/// The width w for which a box of these lengths holds `cubes` cubes of w; axes shorter than w count as w.
-fn pencil_width(cubes: f64, lengths: [f64; 3]) -> f64 {
-    let mut sorted = lengths;
-    sorted.sort_unstable_by(f64::total_cmp);
-    let [a, b, c] = sorted;
-    let (by_volume, by_area, by_length) = ((a * b * c / cubes).cbrt(), (b * c / cubes).sqrt(), c / cubes);
-    let width = if by_volume <= a {
-        by_volume
-    } else if by_area <= b {
-        by_area
-    } else {
-        by_length
-    };
-    if width > 0.0 && width.is_finite() { width } else { f64::MAX }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -131,6 +129,16 @@ mod tests {
                     assert!(cells.per_length.iter().chain(&cells.width).all(|x| x.is_finite()), "{cells:?}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn points_on_a_line_have_cells_along_it() {
+        for axis in 0..3 {
+            let mut bulk = Bulk { n: 1_000_000, lo: [0.0; 3], length: [0.0; 3], clustering: 1.0 };
+            bulk.length[axis] = 1000.0;
+            let cells = lay_out(&classes::single(bulk.n, 1.0)[0], &bulk, 0);
+            assert!(cells.n[axis] >= 100_000, "{cells:?}");
         }
     }
 

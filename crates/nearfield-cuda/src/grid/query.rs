@@ -5,7 +5,7 @@ use crate::{DeviceList, Gpu, gpu::launch};
 use nearfield_core::{ListKind, Result};
 use nearfield_kernels::{
     Float4, Ptr,
-    kernels::{self, CELL_FORCES, CLUSTER},
+    kernels::{self, CELL_FORCES, CLUSTER, CLUSTER_FORCES, ListKernels},
     layouts::{self, Box3, GatherArgs, Law, ListArgs, Results},
 };
 
@@ -52,9 +52,18 @@ impl Candidates<'_> {
     }
 
     /// Whether results are added to: they must be zero before, and order-independent sums be finished after.
-    pub fn scatters(&self) -> bool {
-        matches!(self, Self::Cells(grid) if grid.has_classes())
+    pub fn scatters(&self, pairs: Pairs) -> bool {
+        matches!(self, Self::Cells(grid) if grid.has_classes() || pairs == Pairs::Once)
     }
+}
+
+/// How often pairs of one class are found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pairs {
+    /// From both sides, each of which sums its own force.
+    Directed,
+    /// Once, and added to both particles: less work, but sums depend on order. In cells only.
+    Once,
 }
 
 /// What pairs do, and where their forces go.
@@ -70,8 +79,10 @@ pub struct ForceQuery {
     pub results: Results,
     /// Energies, virials and neighbour counts too.
     pub energy: bool,
-    /// Sums that do not depend on order.
+    /// Sums that do not depend on order; pairs are directed then.
     pub exact: bool,
+    /// How often pairs are found.
+    pub pairs: Pairs,
 }
 
 /// Enqueues the forces on all particles.
@@ -83,6 +94,7 @@ pub struct ForceQuery {
 /// As [`Gpu::launch`].
 pub unsafe fn forces(gpu: &dyn Gpu, candidates: Candidates, query: &ForceQuery) -> Result<()> {
     let family = match candidates {
+        Candidates::Cells(_) if query.pairs == Pairs::Once => CLUSTER_FORCES,
         Candidates::Cells(_) => CELL_FORCES,
         Candidates::All { .. } => kernels::BRUTE_FORCES,
     };
@@ -125,10 +137,7 @@ pub struct ListQuery {
 /// As [`Gpu::allocate`] and [`Gpu::launch`].
 pub unsafe fn count(gpu: &dyn Gpu, candidates: Candidates, query: &ListQuery, list: &mut DeviceList) -> Result<()> {
     list.start(candidates.n())?;
-    let kernel = match candidates {
-        Candidates::Cells(_) => kernels::CELL_LIST_COUNT,
-        Candidates::All { .. } => kernels::BRUTE_LIST_COUNT,
-    };
+    let kernel = list_kernels(candidates, query).count;
     // SAFETY: the caller's promise, and a count for each row.
     unsafe { launch(gpu, kernel, candidates.threads(), &arguments(candidates, query, list)) }
 }
@@ -145,12 +154,18 @@ pub unsafe fn list(gpu: &dyn Gpu, candidates: Candidates, query: &ListQuery, lis
     unsafe { count(gpu, candidates, query, list)? };
     let entries = list.place_rows()?;
     list.make_room(entries, query.images)?;
-    let kernel = match candidates {
-        Candidates::Cells(_) => kernels::CELL_LIST_FILL,
-        Candidates::All { .. } => kernels::BRUTE_LIST_FILL,
-    };
+    let kernel = list_kernels(candidates, query).fill;
     // SAFETY: the same pairs are found again, for which there is room.
     unsafe { launch(gpu, kernel, candidates.threads(), &arguments(candidates, query, list)) }
+}
+
+fn list_kernels(candidates: Candidates, query: &ListQuery) -> ListKernels {
+    match (candidates, query.law.variable != 0) {
+        (Candidates::Cells(_), false) => kernels::CELL_LIST,
+        (Candidates::Cells(_), true) => kernels::CELL_LIST_RADII,
+        (Candidates::All { .. }, false) => kernels::BRUTE_LIST,
+        (Candidates::All { .. }, true) => kernels::BRUTE_LIST_RADII,
+    }
 }
 
 fn arguments(candidates: Candidates, query: &ListQuery, list: &DeviceList) -> ListArgs {

@@ -1,22 +1,22 @@
 //! The acceleration structure over all particles, with what it takes to see periodic images.
 
-use super::{Scene, Updated, ghosts::Ghosts, view};
+use super::{Probe, Scene, Updated, bodies::Bodies, ghosts::Ghosts, view};
 use crate::{
-    Buffer, Gpu,
-    gpu::{Aabb, AccelerationStructure, RayTracing, launch},
+    Gpu,
+    gpu::{self, AccelerationStructure, RayTracing},
 };
 use nearfield_core::{Error, Images, Result, maintenance::Action};
 use nearfield_kernels::{
-    Ptr, kernels,
+    Ptr,
     layouts::{BoxesArgs, Rays},
 };
 use std::sync::Arc;
 
-/// Boxes around particles, built or refitted.
+/// Bodies around particles, built or refitted.
 pub struct Bvh {
-    gpu: Arc<dyn Gpu>,
+    probe: Probe,
     images: Images,
-    boxes: Buffer<Aabb>,
+    bodies: Bodies,
     structure: Box<dyn AccelerationStructure>,
     /// Translated copies of the structure, under [`Images::Instances`].
     instances: Option<Box<dyn AccelerationStructure>>,
@@ -27,16 +27,16 @@ pub struct Bvh {
 }
 
 impl Bvh {
-    /// Over nothing, seeing periodic images by `images`.
+    /// Over nothing, asked by `probe`, seeing periodic images by `images`.
     ///
     /// # Errors
     /// [`Error::Device`] where there is no ray tracing.
-    pub fn new(gpu: &Arc<dyn Gpu>, images: Images) -> Result<Self> {
+    pub fn new(gpu: &Arc<dyn Gpu>, probe: Probe, images: Images) -> Result<Self> {
         let tracing = tracing(gpu)?;
         Ok(Self {
-            gpu: gpu.clone(),
+            probe,
             images,
-            boxes: Buffer::new(gpu, "boxes around particles"),
+            bodies: Bodies::new(gpu, probe),
             structure: tracing.structure()?,
             instances: (images == Images::Instances).then(|| tracing.structure()).transpose()?,
             ghosts: (images == Images::Ghosts).then(|| Ghosts::new(gpu)),
@@ -64,9 +64,9 @@ impl Bvh {
         if let Some(ghosts) = &mut self.ghosts {
             ghosts.create(scene, &arguments(scene))?;
         }
-        let n = self.fit(scene)?;
-        // SAFETY: there are as many boxes as were fitted.
-        unsafe { self.structure.build_boxes(self.boxes.ptr(), n)? };
+        let (bodies, n) = self.fit(scene)?;
+        // SAFETY: there are as many bodies as were fitted.
+        unsafe { self.structure.build(bodies, n)? };
         self.place_instances(scene)
     }
 
@@ -75,40 +75,37 @@ impl Bvh {
         if scene.particles.n == 0 {
             return Ok(true);
         }
-        let n = self.fit(scene)?;
+        let (bodies, n) = self.fit(scene)?;
         if let Some(ghosts) = &self.ghosts
             && !ghosts.suffice()?
         {
             return Ok(false);
         }
-        // SAFETY: there are as many boxes as were fitted, for the particles and ghosts of the last build.
-        unsafe { self.structure.refit_boxes(self.boxes.ptr(), n)? };
+        // SAFETY: there are as many bodies as were fitted, for the particles and ghosts of the last build.
+        unsafe { self.structure.refit(bodies, n)? };
         self.place_instances(scene)?;
         Ok(true)
     }
 
-    /// Fits boxes to the present positions and gives their number.
-    fn fit(&mut self, scene: &Scene) -> Result<u32> {
+    /// Fits bodies to the present positions and gives them and their number.
+    fn fit(&mut self, scene: &Scene) -> Result<(gpu::Bodies, u32)> {
         let mut arguments = arguments(scene);
         if let Some(ghosts) = &mut self.ghosts {
             ghosts.watch()?;
             arguments = ghosts.arguments(&arguments);
         }
-        let n = u64::from(arguments.n) + u64::from(arguments.n_ghosts);
-        match self.ghosts {
-            Some(_) => self.boxes.resize_with_room(n as usize)?,
-            None => self.boxes.resize(n as usize)?,
-        }
-        arguments.boxes = Ptr::new(self.boxes.ptr().address());
-        // SAFETY: there is a box for each particle and ghost, and a position for each particle.
-        unsafe { launch(&*self.gpu, kernels::FIT_BOXES, n, &arguments)? };
-        Ok(n as u32)
+        self.bodies.fit(scene, self.probe, &arguments)
     }
 
     fn place_instances(&mut self, scene: &Scene) -> Result<()> {
         let Some(instances) = &mut self.instances else { return Ok(()) };
         let translations: Vec<_> = scene.sim_box.images().into_iter().map(|image| scene.sim_box.shift(image)).collect();
         instances.build_instances(&*self.structure, &translations)
+    }
+
+    /// How it is asked.
+    pub(super) fn probe(&self) -> Probe {
+        self.probe
     }
 
     /// What rays of all particles need to know.
@@ -119,6 +116,7 @@ impl Bvh {
             law: scene.law,
             space: scene.space,
             particles: scene.particles,
+            geometry: self.probe.geometry(scene.reach(), scene.sim_box),
             handle: self.instances.as_ref().unwrap_or(&self.structure).handle(),
             ghost: self.ghosts.as_ref().map_or(Ptr::NULL, Ghosts::list),
             view: view::number(self.images),
@@ -133,7 +131,7 @@ impl Bvh {
 
     /// Bytes held on the device.
     pub fn bytes(&self) -> u64 {
-        self.boxes.bytes()
+        self.bodies.bytes()
             + self.structure.bytes()
             + self.instances.as_ref().map_or(0, |instances| instances.bytes())
             + self.ghosts.as_ref().map_or(0, Ghosts::bytes)
@@ -144,7 +142,7 @@ pub(super) fn tracing(gpu: &Arc<dyn Gpu>) -> Result<&dyn RayTracing> {
     gpu.ray_tracing().map_err(Error::Device)
 }
 
-/// Of the kernels that fit boxes, without ghosts.
+/// Of the kernels that fit bodies, without ghosts.
 fn arguments(scene: &Scene) -> BoxesArgs {
     BoxesArgs {
         space: scene.space,

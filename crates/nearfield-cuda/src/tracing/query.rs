@@ -22,12 +22,12 @@ pub struct Step {
 }
 
 impl Bvh {
-    /// Sums the forces on each particle by its own ray. Complete where all radii are equal.
+    /// Sums the forces on each particle by its own rays. Complete where all radii are equal.
     ///
     /// # Errors
     /// [`nearfield_core::Error::Device`].
     pub fn gather(&self, scene: &Scene, sums: Sums, results: Results) -> Result<()> {
-        let program = kernels::RAY_GATHER.choose(&scene.law, sums.exact, sums.energy);
+        let program = self.probe().gather().choose(&scene.law, sums.exact, sums.energy);
         let parameters = ForceRays { rays: self.rays(scene), results };
         // SAFETY: the structure was updated for the scene, whose arrays have n elements, as have those of the results.
         unsafe { trace(tracing(scene.gpu)?, program, scene.particles.n, &parameters) }

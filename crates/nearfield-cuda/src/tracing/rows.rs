@@ -4,7 +4,7 @@ use super::{Bvh, Scene, bvh::tracing};
 use crate::{DeviceList, gpu::trace};
 use nearfield_core::{ListKind, Result};
 use nearfield_kernels::{
-    Ptr, kernels,
+    Ptr,
     layouts::{ListRays, Rays},
 };
 use std::ops::Range;
@@ -37,7 +37,7 @@ impl Bvh {
         list.start(n as usize)?;
         let parameters = parameters(self.rays(scene), query, list, 0);
         // SAFETY: there is a count for each particle; the structure was updated for the scene.
-        unsafe { trace(tracing(scene.gpu)?, kernels::RAY_COUNT, n, &parameters) }
+        unsafe { trace(tracing(scene.gpu)?, self.probe().count(), n, &parameters) }
     }
 
     /// Lists the neighbours of all particles, with or without their images; waits for the device once, to know how many
@@ -65,7 +65,7 @@ impl Bvh {
         let rays = Rays { first: places.start, ..self.rays(scene) };
         let parameters = parameters(rays, query, list, base);
         // SAFETY: the list has room for as many entries as were counted, or the caller has made it for those of `places`.
-        unsafe { trace(tracing(scene.gpu)?, kernels::RAY_FILL, places.len() as u32, &parameters) }
+        unsafe { trace(tracing(scene.gpu)?, self.probe().fill(), places.len() as u32, &parameters) }
     }
 }
 

@@ -28,6 +28,13 @@ pub struct Scene<'a> {
     pub slack: f32,
 }
 
+impl Scene<'_> {
+    /// The largest distance at which particles are seen.
+    pub(super) fn reach(&self) -> f32 {
+        self.largest + self.skin
+    }
+}
+
 /// How forces are summed, and whether energies are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sums {

@@ -30,7 +30,7 @@ pub(super) fn codes(sim_box: &SimBox) -> ([u8; 32], u32) {
 /// Coordinates from which on gamma rays go to images -1 and +1: as far from the faces as the largest radius reaches
 /// (paper A, section 3.3), because a large particle across a face may hold a ray whose own radius does not reach it.
 pub(super) fn near_faces(scene: &Scene) -> ([f32; 3], [f32; 3]) {
-    let reach = conservative_range(scene.largest + scene.skin, 0.0) + rounding(scene);
+    let reach = conservative_range(scene.reach(), 0.0) + rounding(scene);
     (scene.space.lo.map(|face| (face + reach).next_up()), scene.space.hi.map(|face| (face - reach).next_down()))
 }
 

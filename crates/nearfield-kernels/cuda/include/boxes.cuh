@@ -4,10 +4,12 @@
 
 #include "predicate.cuh"
 
-// Half the width of the box around a particle: its radius, rounded outwards as nearfield_core's conservative_range.
+// Half the width of the box around a particle: its radius, rounded outwards as nearfield_core's conservative_range. Along
+// open axes a particle may be far outside of the box, where corners are rounded more coarsely than `slack` knows.
 __device__ inline float half_width(const BoxesArgs& a, const float4& x) {
     const float radius = (a.cutoff > 0.0f ? a.cutoff : x.w) + a.skin;
-    return radius * 1.00000095367431640625f + a.slack;
+    const float farthest = fmaxf(fmaxf(fabsf(x.x), fabsf(x.y)), fabsf(x.z));
+    return radius * 1.00000095367431640625f + a.slack + farthest * 4.76837158203125e-7f;
 }
 
 __device__ inline u32 faces_of_axis(const Box3& space, int axis, float x, float reach) {
@@ -29,6 +31,12 @@ __device__ inline u32 faces_with_ghosts(const BoxesArgs& a, const float4& x) {
     if (in_use == 0) return 0;
     const u32 wrappable = faces_within(a.space, x, a.slack + a.margin);
     return in_use | wrappable | (wrappable & 0x15u) << 1 | (wrappable & 0x2au) >> 1;
+}
+
+// Notes when particle k, if it is one, needs a ghost that it lacks.
+__device__ inline void note_missing_ghosts(const BoxesArgs& a, u32 k, const float4& x) {
+    if (!a.faces || k >= a.n) return;
+    if ((faces_within(a.space, x, half_width(a, x)) & ~(u32)a.faces[k]) != 0) *a.counter = 1;
 }
 
 // The faces by which a particle is seen in an image.

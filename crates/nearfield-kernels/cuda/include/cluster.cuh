@@ -14,6 +14,7 @@ enum Images {
 struct Cluster {
     float4 x[CLUSTER];
     u32 first;
+    u32 least;  // slots before are not searched for
     u32 active; // bit k: neighbours of particle k are searched for
     bool once;  // pairs are met only from this side
 
@@ -26,6 +27,7 @@ struct Cluster {
         first = place.first;
         cutoff = law.variable ? -1.0f : law.cutoff;
         radius = 0.0f;
+        least = 0;
         active = (1u << place.count) - 1;
         once = false;
 #pragma unroll

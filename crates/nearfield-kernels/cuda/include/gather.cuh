@@ -22,13 +22,23 @@ template <> struct Traits<AnyLaw> {
     static const bool COSTLY = true;
 };
 
-template <class L, bool EXACT, bool ENERGY, bool BRUTE> struct Gather : Cluster {
+// Which candidates a cluster meets, and at which image.
+enum Meetings {
+    DIRECTED, // all in its own class, and those of larger classes
+    ONCE,     // those from its own first slot on, so that each pair is met once but within a cluster
+    NO_IMAGE, // all, without knowing their images
+};
+
+template <class L, bool EXACT, bool ENERGY, Meetings MEETINGS> struct Gather : Cluster {
     const GatherArgs& a;
+    u32 count;
     u32 kind[CLUSTER];
     Sums<EXACT, ENERGY> sums[CLUSTER];
 
     __device__ Gather(const GatherArgs& arguments, const ClusterPlace& place) : a(arguments) {
         load(a.law, a.grid.slot, place);
+        count = place.count;
+        if (MEETINGS == ONCE) least = first;
 #pragma unroll
         for (u32 k = 0; k < CLUSTER; ++k) {
             kind[k] = kind_of(first + smaller(k, place.count - 1));
@@ -43,24 +53,29 @@ template <class L, bool EXACT, bool ENERGY, bool BRUTE> struct Gather : Cluster 
 
     // One candidate in each lane. Chunks that need no care are most of them.
     __device__ void meet(u32 slot, bool valid, u32 image) {
-        if (BRUTE) {
-            pairs<NEAREST, true>(slot, valid, image);
+        const float4 xj = slots[slot];
+        if (MEETINGS == NO_IMAGE) {
+            pairs<NEAREST, true>(slot, xj, valid, image);
         } else if (Traits<L>::COSTLY) {
-            pairs<SHIFTED, true>(slot, valid, image);
-        } else if (__any_sync(ALL_LANES, valid && (image != HOME_IMAGE || slot - first < CLUSTER)) || is_partial()) {
-            pairs<SHIFTED, true>(slot, valid, image);
+            pairs<SHIFTED, true>(slot, xj, valid, image);
+        } else if (is_partial() || __any_sync(ALL_LANES, valid && slot - first < CLUSTER)) {
+            pairs<SHIFTED, true>(slot, xj, valid, image);
+        } else if (__any_sync(ALL_LANES, valid && image != HOME_IMAGE)) {
+            pairs<SHIFTED, false>(slot, xj, valid, image);
         } else {
-            pairs<HOME, false>(slot, valid, image);
+            pairs<HOME, false>(slot, xj, valid, image);
         }
     }
 
     // CARE: some particles may not be active, and candidates may be the particles themselves.
-    template <Images IMAGES, bool CARE> __device__ void pairs(u32 slot, bool valid, u32 image) {
-        float4 xj = slots[slot];
+    template <Images IMAGES, bool CARE>
+    __device__ void pairs(u32 slot, const float4& xj, bool valid, u32 image) {
         const u32 kind_j = kind_of(slot);
         Shift shift = {0.0f, 0.0f, 0.0f};
         if (IMAGES == SHIFTED && image != HOME_IMAGE) shift = shift_of(a.space, image);
         const u32 own = IMAGES == SHIFTED && image != HOME_IMAGE ? (u32)CLUSTER : slot - first;
+        // Pairs within a cluster are met from both sides, at whichever image.
+        const bool both = MEETINGS == ONCE ? !CARE || slot - first >= count : !Traits<L>::ONE_RANGE && once;
         Sums<EXACT, ENERGY> other = zero_sums<Sums<EXACT, ENERGY>>();
         bool any = false;
 #pragma unroll(Traits<L>::COSTLY ? 1 : CLUSTER)
@@ -75,15 +90,17 @@ template <class L, bool EXACT, bool ENERGY, bool BRUTE> struct Gather : Cluster 
             const PairForce pair = L::template evaluate<ENERGY>(a.law, r2, range, kind[k], kind_j);
             const float f = in ? pair.f_over_r : 0.0f;
             sums[k].add(a.law, d.x, d.y, d.z, f, pair.energy, r2);
-            if (!Traits<L>::ONE_RANGE && once) {
+            if (MEETINGS == ONCE || both) {
                 other.add(a.law, -d.x, -d.y, -d.z, f, pair.energy, r2);
                 any = any || in;
             }
         }
-        if (!Traits<L>::ONE_RANGE && any) scatter_sums(a.results, a.law, a.n, place_of(a.grid, slot), other);
+        // Cheaper than to keep account of pairs in range.
+        if (MEETINGS == ONCE && !ENERGY) any = other.x != 0 || other.y != 0 || other.z != 0;
+        if (both && any) scatter_sums(a.results, a.law, a.n, place_of(a.grid, slot), other);
     }
 
-    __device__ void store(const ClusterPlace& cluster) {
+    __device__ void store() {
         Sums<EXACT, ENERGY> total = zero_sums<Sums<EXACT, ENERGY>>();
         total.x = sum(&Sums<EXACT, ENERGY>::x);
         total.y = sum(&Sums<EXACT, ENERGY>::y);
@@ -94,9 +111,9 @@ template <class L, bool EXACT, bool ENERGY, bool BRUTE> struct Gather : Cluster 
             total.neighbors = sum(&Sums<EXACT, ENERGY>::neighbors);
         }
         const u32 lane = threadIdx.x % WARP, k = lane / 4;
-        if (lane % 4 != 0 || k >= cluster.count) return;
+        if (lane % 4 != 0 || k >= count) return;
         const u32 place = place_of(a.grid, first + k);
-        if (!BRUTE && a.grid.n_classes > 1) {
+        if (MEETINGS == ONCE || (MEETINGS == DIRECTED && a.grid.n_classes > 1)) {
             scatter_sums(a.results, a.law, a.n, place, total);
         } else {
             store_sums(a.results, a.law, a.n, place, total);

@@ -420,6 +420,115 @@ struct ListArgs {
 };
 static_assert(sizeof(ListArgs) == 736, "ListArgs differs between host and device");
 
+// Consecutive chunks of 32 entries of a cluster's list.
+struct Segment {
+    // First chunk.
+    u32 begin;
+    // The chunk after the last.
+    u32 end;
+    // The segment where the list goes on; all ones where it ends.
+    u32 next;
+    // Zero.
+    u32 unused;
+};
+static_assert(sizeof(Segment) == 16, "Segment differs between host and device");
+
+// What kernels tell each other and the host about a list.
+struct ClusterControl {
+    // The first step whose positions the list may not serve; all ones while none is known, zero where there was no
+    // room for the list.
+    u64 rebuild_at;
+    // The last step that was computed by the list.
+    u64 done;
+    // Chunks of all lists.
+    u32 chunks;
+    // Segments beyond the first of each cluster.
+    u32 segments;
+};
+static_assert(sizeof(ClusterControl) == 24, "ClusterControl differs between host and device");
+
+// Arguments of `list_clusters`.
+struct ClusterListArgs {
+    // The interaction, its cutoff longer by the skin.
+    Law law;
+    // The box.
+    Box3 space;
+    // Cells of particles in memory order.
+    Grid grid;
+    // One for each cluster, then those that follow, `[segment_capacity]`.
+    Segment *segment;
+    // Entries, `[capacity][32]`.
+    u32 *entry;
+    // Chunks and segments are counted from zero, beyond what there is room for.
+    ClusterControl *control;
+    // Number of particles.
+    u32 n;
+    // Number of clusters.
+    u32 n_clusters;
+    // Chunks that there is room for.
+    u32 capacity;
+    // Segments that there is room for.
+    u32 segment_capacity;
+    // Added to ranges so that roundings lose no candidate.
+    float slack;
+    // How near a periodic face a particle may cross it while the list serves.
+    float margin;
+};
+static_assert(sizeof(ClusterListArgs) == 728, "ClusterListArgs differs between host and device");
+
+// Arguments of `listed_*`: forces of all particles.
+struct ListedArgs {
+    // As for all kernels that gather forces, of particles in memory order.
+    GatherArgs gather;
+    // See [`ClusterListArgs`].
+    Segment *segment;
+    // See [`ClusterListArgs`].
+    u32 *entry;
+};
+static_assert(sizeof(ListedArgs) == 752, "ListedArgs differs between host and device");
+
+// Arguments of `step_*`: forces, and with them a step of all particles.
+struct ClusterStepArgs {
+    // Where forces come from; results are not stored.
+    ListedArgs listed;
+    // How particles move.
+    Integrator integrator;
+    // The particles.
+    Particles particles;
+    // Where positions go.
+    float4 *next;
+    // Positions that the list was made for.
+    float4 *reference;
+    // What went wrong.
+    Status *status;
+    // Whether the list serves.
+    ClusterControl *control;
+    // The step that the forces belong to.
+    u64 step;
+    // Square of the distance that particles may move while the list serves.
+    float limit2;
+    // Zero.
+    u32 unused;
+};
+static_assert(sizeof(ClusterStepArgs) == 928, "ClusterStepArgs differs between host and device");
+
+// Arguments of `clusters_moved`: whether a list serves the present positions.
+struct ClustersMovedArgs {
+    // The box.
+    Box3 space;
+    // Positions.
+    float4 *position;
+    // Positions that the list was made for.
+    float4 *reference;
+    // `rebuild_at` becomes zero where the list does not serve.
+    ClusterControl *control;
+    // Number of particles.
+    u32 n;
+    // Square of the distance that particles may move.
+    float limit2;
+};
+static_assert(sizeof(ClustersMovedArgs) == 80, "ClustersMovedArgs differs between host and device");
+
 // A mirror particle: a box around a periodic image.
 struct Ghost {
     // Place of the particle.
@@ -459,17 +568,54 @@ struct BoxesArgs {
 };
 static_assert(sizeof(BoxesArgs) == 112, "BoxesArgs differs between host and device");
 
+// Spheres or squares around particles and the rays that meet them (paper B), whose origins are not their
+// particles. Zero where bodies are boxes.
+struct Geometry {
+    // Least coordinates that bodies and rays are given, whatever those of particles.
+    float lo[3];
+    // Greatest coordinates.
+    float hi[3];
+    // Radius of spheres; half the side of squares.
+    float body;
+    // Distance of squares from their particle along x, and of rays from theirs along y and z.
+    float offset;
+    // How far beyond their diagonal the triangles of a square reach.
+    float overlap;
+    // From the particle to the beginning of its rays, along them.
+    float start;
+    // Length of rays.
+    float length;
+    // Zero.
+    u32 unused;
+};
+static_assert(sizeof(Geometry) == 48, "Geometry differs between host and device");
+
+// Arguments of `fit_spheres` and `fit_squares`.
+struct BodiesArgs {
+    // As for boxes, of which there are none.
+    BoxesArgs boxes;
+    // Sizes and places.
+    Geometry geometry;
+    // Centres of spheres around each particle, then each ghost, `[n + n_ghosts]`.
+    float4 *centers;
+    // Vertices of the triangles of squares, `[n + n_ghosts][2][2][3][3]`: by square, triangle, vertex and axis.
+    float *vertices;
+};
+static_assert(sizeof(BodiesArgs) == 176, "BodiesArgs differs between host and device");
+
 // What rays need to know.
 struct Rays {
     // The interaction.
     Law law;
     // The box.
     Box3 space;
-    // The particles, each with a ray from its position and a box around it.
+    // The particles, each with a ray from its position and a box around it, or what `geometry` says.
     Particles particles;
+    // Bodies other than boxes.
+    Geometry geometry;
     // What rays are traced against.
     u64 handle;
-    // Mirror particles, whose boxes follow those of the particles.
+    // Mirror particles, whose bodies follow those of the particles.
     Ghost *ghost;
     // How rays see periodic images: 0 by gamma rays, 1 in instances, 2 as ghosts.
     u32 view;
@@ -486,16 +632,16 @@ struct Rays {
     // Place of the particle of the first ray.
     u32 first;
 };
-static_assert(sizeof(Rays) == 264, "Rays differs between host and device");
+static_assert(sizeof(Rays) == 312, "Rays differs between host and device");
 
-// Parameters of the programs in `ray_gather` and `ray_scatter`.
+// Parameters of the programs in `ray_gather`, `axis_gather`, `edge_gather` and `ray_scatter`.
 struct ForceRays {
     // The rays.
     Rays rays;
     // Where forces go.
     Results results;
 };
-static_assert(sizeof(ForceRays) == 304, "ForceRays differs between host and device");
+static_assert(sizeof(ForceRays) == 352, "ForceRays differs between host and device");
 
 // Parameters of the programs in `ray_advance`.
 struct AdvanceRays {
@@ -512,9 +658,9 @@ struct AdvanceRays {
     // The step that the forces belong to.
     u64 step;
 };
-static_assert(sizeof(AdvanceRays) == 416, "AdvanceRays differs between host and device");
+static_assert(sizeof(AdvanceRays) == 464, "AdvanceRays differs between host and device");
 
-// Parameters of the programs in `ray_list`.
+// Parameters of the programs in `ray_list`, `axis_list` and `edge_list`.
 struct ListRays {
     // The rays.
     Rays rays;
@@ -536,7 +682,7 @@ struct ListRays {
     // Zero.
     u32 unused;
 };
-static_assert(sizeof(ListRays) == 320, "ListRays differs between host and device");
+static_assert(sizeof(ListRays) == 368, "ListRays differs between host and device");
 
 // Arguments of `rows_*`: forces from stored rows of neighbours, numbered by place.
 struct RowsArgs {

@@ -95,6 +95,7 @@ struct RowSearch {
     const Box3& space;
     const Bounds& box;
     float range, slack;
+    u32 least; // slots before are left out
 
     // Of the image that is being searched.
     u32 image, first_y, first_z, n_y, next, count;
@@ -133,13 +134,18 @@ struct RowSearch {
         const u32 x0 = cell_coordinate(cells, 0, box.lo[0] - half - shift.x);
         const u32 x1 = cell_coordinate(cells, 0, box.hi[0] + half - shift.x);
         const u32 first = first_of_cells(cells, row_number(cells, y, z), x0, x1);
-        start = cell_start[first];
-        end = cell_start[first + (x1 - x0) + 1];
+        start = larger(cell_start[first], least);
+        end = larger(cell_start[first + (x1 - x0) + 1], start);
     }
 };
 
+// What waits in shared memory: rows, the candidates in them, and candidates in the queue.
+struct Pending {
+    u32 rows, candidates, queued;
+};
+
 // Appends the lanes' rows to those that wait.
-__device__ inline void append_rows(Scratch& scratch, u32& n_rows, u32& total, u32 start, u32 end, u32 image) {
+__device__ inline void append_rows(Scratch& scratch, Pending& pending, u32 start, u32 end, u32 image) {
     const u32 length = end - start, used = __ballot_sync(ALL_LANES, length != 0);
     u32 sum = length;
     for (u32 step = 1; step < WARP; step *= 2) {
@@ -147,13 +153,13 @@ __device__ inline void append_rows(Scratch& scratch, u32& n_rows, u32& total, u3
         if (threadIdx.x % WARP >= step) sum += before;
     }
     if (length != 0) {
-        const u32 row = n_rows + __popc(used & lanes_below());
-        scratch.end[row] = total + sum;
-        scratch.offset[row] = start - (total + sum - length);
+        const u32 row = pending.rows + __popc(used & lanes_below());
+        scratch.end[row] = pending.candidates + sum;
+        scratch.offset[row] = start - (pending.candidates + sum - length);
         scratch.image[row] = image;
     }
-    n_rows += __popc(used);
-    total += __shfl_sync(ALL_LANES, sum, WARP - 1);
+    pending.rows += __popc(used);
+    pending.candidates += __shfl_sync(ALL_LANES, sum, WARP - 1);
 }
 
 // Takes the candidates of the waiting rows 32 at a time to `v.meet(slot, valid, image)`.
@@ -167,13 +173,16 @@ template <class V> __device__ inline void walk_rows(const Scratch& scratch, u32 
     }
 }
 
-// The same, but only those within their own radius or `v.radius` of the box are met.
+// The same, but only those within their own radius or `v.radius` of the box are met. Those that do not fill a chunk
+// wait in the queue until `finish`.
 template <class V>
-__device__ inline void walk_rows_within(Scratch& scratch, u32 total, const Box3& space, const Bounds& box, V& v) {
-    u32 row = 0, queued = 0;
-    for (u32 base = 0; base < total || queued > 0; base += WARP) {
+__device__ inline void walk_rows_within(Scratch& scratch, Pending& pending, bool finish, const Box3& space,
+                                        const Bounds& box, V& v) {
+    const u32 lane = threadIdx.x % WARP, total = pending.candidates;
+    u32 row = 0, queued = pending.queued;
+    for (u32 base = 0; base < total || (finish && queued > 0); base += WARP) {
         if (base < total) {
-            const u32 t = base + threadIdx.x % WARP;
+            const u32 t = base + lane;
             const bool valid = t < total;
             while (valid && scratch.end[row] <= t) ++row;
             const u32 slot = valid ? t + scratch.offset[row] : 0, image = scratch.image[row];
@@ -193,22 +202,21 @@ __device__ inline void walk_rows_within(Scratch& scratch, u32 total, const Box3&
             queued += __popc(votes);
             __syncwarp();
         }
-        // The last chunk of all may be partial.
-        while (queued >= WARP || (queued > 0 && base + WARP >= total)) {
-            const u32 taken = smaller(queued, (u32)WARP), lane = threadIdx.x % WARP;
+        if (queued >= WARP || (finish && base >= total)) {
+            const u32 taken = smaller(queued, (u32)WARP);
             queued -= taken;
             const u32 place = queued + smaller(lane, taken - 1);
             v.meet(scratch.queue_slot[place], lane < taken, scratch.queue_image[place]);
             __syncwarp();
         }
     }
+    pending.queued = queued;
 }
 
-// Candidates of one class for the particles in `box`.
+// Candidates of one class for the particles in a box. Some may wait for those of other classes until `finish`.
 template <bool WITHIN, class V>
-__device__ inline void search_class(RowSearch search, Scratch& scratch, V& v) {
+__device__ inline void search_class(RowSearch search, Scratch& scratch, Pending& pending, bool finish, V& v) {
     u32 images = reachable_images(search.space, search.box, search.range + search.slack);
-    u32 n_rows = 0, total = 0;
     search.next = search.count = 0;
     // There is one call to walk rows, because its code is long: when enough rows wait or nothing is left to search.
     for (bool last = false; !last;) {
@@ -219,18 +227,18 @@ __device__ inline void search_class(RowSearch search, Scratch& scratch, V& v) {
         if (search.next < search.count) {
             u32 start, end;
             search.next_row(start, end);
-            append_rows(scratch, n_rows, total, start, end, search.image);
+            append_rows(scratch, pending, start, end, search.image);
         }
         last = search.next >= search.count && images == 0;
-        if (last || n_rows > ROWS - WARP) {
+        if ((last && finish) || pending.rows > ROWS - WARP) {
             __syncwarp();
             if (WITHIN) {
-                walk_rows_within(scratch, total, search.space, search.box, v);
+                walk_rows_within(scratch, pending, last && finish, search.space, search.box, v);
             } else {
-                walk_rows(scratch, total, v);
+                walk_rows(scratch, pending.candidates, v);
             }
             __syncwarp();
-            n_rows = total = 0;
+            pending.rows = pending.candidates = 0;
         }
     }
 }
@@ -246,19 +254,24 @@ __device__ inline bool is_spread(const Bounds& box, const CellClass& cells, floa
 }
 
 // Candidates for the particles of a cluster: of its own class, and of those of larger radii, so that pairs of two
-// classes are met once, from the smaller. Tells `v` which of its particles are searched for and whether pairs are met
-// once.
+// classes are met once, from the smaller. Slots before `v.least` are left out. Tells `v` which of its particles are
+// searched for and whether pairs are met once.
 template <bool WITHIN, class V>
 __device__ inline void search_cells(const Grid& grid, const Box3& space, float slack, const ClusterPlace& cluster,
                                     const Bounds& box, Scratch& scratch, V& v) {
+    Pending pending = {0, 0, 0};
+    bool apart = false;
     for (u32 k = cluster.of_class; k < grid.n_classes; ++k) {
         const CellClass& cells = grid.classes[k];
-        const bool apart = is_spread(box, cells, cells.largest);
         v.once = k > cluster.of_class;
+        // The ranges of all larger classes are at least that of the next.
+        if (k <= cluster.of_class + 1) apart = is_spread(box, cells, cells.largest);
+        const bool finish = apart || !v.once || k + 1 == grid.n_classes;
         for (u32 part = 0; part < (apart ? cluster.count : 1); ++part) {
             v.active = apart ? 1u << part : (1u << cluster.count) - 1;
             const Bounds part_box = apart ? point_bounds(grid.slot[cluster.first + part]) : box;
-            search_class<WITHIN>(RowSearch{cells, grid.cell_start, space, part_box, cells.largest, slack}, scratch, v);
+            const RowSearch search = {cells, grid.cell_start, space, part_box, cells.largest, slack, v.least};
+            search_class<WITHIN>(search, scratch, pending, finish, v);
         }
     }
 }

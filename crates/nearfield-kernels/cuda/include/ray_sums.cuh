@@ -79,10 +79,11 @@ template <u32 FROM, int COUNT> __device__ inline void write_payload(const u32* w
 }
 
 // Sends the rays of a particle and gives the sums they come back with.
-template <bool EXACT, bool ENERGY> __device__ inline Sums<EXACT, ENERGY> sum_rays(const Rays& rays, u32 i) {
+template <class Probe, bool EXACT, bool ENERGY>
+__device__ inline Sums<EXACT, ENERGY> sum_rays(const Rays& rays, u32 i) {
     // Zero sums are zero words.
     u32 payload[PAYLOAD_CONSUMER + SumWords<EXACT, ENERGY>::COUNT] = {};
-    send_rays(rays, i, payload);
+    send_rays<Probe>(rays, i, payload);
     Sums<EXACT, ENERGY> sums;
     unpack(payload + PAYLOAD_CONSUMER, sums);
     return sums;

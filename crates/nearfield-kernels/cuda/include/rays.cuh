@@ -1,8 +1,6 @@
 // Rays from particles: which periodic images they look at, and which particles they meet.
 //
-// Particle j is a box around its position whose half width is its radius, so an infinitesimal ray from i meets exactly
-// the j with |x_i - x_j| < r_j on each axis; the predicate refuses the rest. A pair with r_j <= d < r_i is met from the
-// side of j alone: where radii differ, the particle of the smaller radius acts for both.
+// What the rays are is the `Probe` of a template: point_rays.cuh, axis_rays.cuh or edge_rays.cuh.
 
 #pragma once
 
@@ -16,6 +14,8 @@ enum View { GAMMA, INSTANCES, GHOSTS };
 #define PAYLOAD_POSITION 0
 #define PAYLOAD_IMAGE 4
 #define PAYLOAD_CONSUMER 5
+// In the word of the image, above its number: which of its particle's rays it is, where there are several.
+#define RAY_NUMBER_SHIFT 8
 
 // Whether images of particles -1, 0 and +1 boxes away along an axis are within reach, as bits 0 to 2.
 __device__ inline u32 reach(float x, float near_lo, float near_hi) {
@@ -23,7 +23,7 @@ __device__ inline u32 reach(float x, float near_lo, float near_hi) {
 }
 
 // Sends the rays of a particle. Gamma rays (paper A, section 3.3) start where the particle is seen from the image.
-template <int WORDS> __device__ inline void send_rays(const Rays& rays, u32 i, u32 (&payload)[WORDS]) {
+template <class Probe, int WORDS> __device__ inline void send_rays(const Rays& rays, u32 i, u32 (&payload)[WORDS]) {
     const float4 x = rays.particles.position[i];
     payload[PAYLOAD_POSITION] = __float_as_uint(x.x);
     payload[PAYLOAD_POSITION + 1] = __float_as_uint(x.y);
@@ -42,11 +42,11 @@ template <int WORDS> __device__ inline void send_rays(const Rays& rays, u32 i, u
         if (k > 0 && !(near[0] >> image % 3 & near[1] >> image / 3 % 3 & near[2] >> image / 9 & 1)) continue;
         const Shift s = shift_of(rays.space, image);
         payload[PAYLOAD_IMAGE] = image;
-        rt::trace(rays.handle, x.x - s.x, x.y - s.y, x.z - s.z, payload);
+        Probe::send(rays, x, s, payload);
     }
 }
 
-// What an intersection program sees: particle i, whose ray it is, and the image of j whose box holds the ray.
+// What the program of a primitive sees: particle i, whose ray it is, and the image of j whose body the ray meets.
 struct Meeting {
     u32 i, j, image;
     float4 xi, xj;
@@ -56,13 +56,14 @@ struct Meeting {
     bool near;
 };
 
-__device__ inline Meeting meet(const Rays& rays) {
+// Of a ray with a body: a particle's, or after those a ghost's.
+__device__ inline Meeting meet_body(const Rays& rays, u32 body) {
     Meeting m;
     m.i = rays.first + rt::ray_index();
-    m.j = rt::primitive_index();
+    m.j = body;
     m.image = HOME_IMAGE;
     if (rays.view == GAMMA) {
-        m.image = rt::payload<PAYLOAD_IMAGE>();
+        m.image = rt::payload<PAYLOAD_IMAGE>() & ((1u << RAY_NUMBER_SHIFT) - 1);
     } else if (rays.view == INSTANCES) {
         m.image = rays.image[rt::instance_index()];
     } else if (m.j >= rays.particles.n) {
@@ -82,11 +83,4 @@ __device__ inline Meeting meet(const Rays& rays) {
     m.range = (rays.law.variable ? fmaxf(m.xi.w, m.xj.w) : rays.law.cutoff) + rays.skin;
     m.near = m.r2 < m.range * m.range && !(m.j == m.i && m.image == HOME_IMAGE);
     return m;
-}
-
-// Whether the ray of i is the one that counts for the pair: that of the smaller radius, which is sure to be inside of
-// the other's box, and of equal ones that of the smaller place.
-__device__ inline bool acts(const Rays& rays, const Meeting& m) {
-    if (!rays.law.variable || m.xi.w == m.xj.w) return m.i < m.j;
-    return m.xi.w < m.xj.w;
 }

@@ -128,13 +128,25 @@ __device__ inline void store_sums(const Results& out, const Law& law, u32, u32 i
     }
 }
 
+// Adds to a vector that others add to. Sources that define VECTOR_REDUCTIONS are compiled for compute capability 9.0
+// too, where one instruction does it.
+__device__ inline void add_vector(float4* to, float x, float y, float z) {
+#if defined(VECTOR_REDUCTIONS) && defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
+    asm volatile("{ .reg .u64 a; cvta.to.global.u64 a, %0; red.global.add.v4.f32 [a], {%1, %2, %3, %4}; }" ::"l"(to),
+                 "f"(x), "f"(y), "f"(z), "f"(0.0f)
+                 : "memory");
+#else
+    float* sum = &to->x;
+    atomicAdd(sum, x);
+    atomicAdd(sum + 1, y);
+    atomicAdd(sum + 2, z);
+#endif
+}
+
 // Adds to the sums of particle `i`, which others add to.
 template <bool ENERGY>
 __device__ inline void scatter_sums(const Results& out, const Law&, u32, u32 i, const Sums<false, ENERGY>& s) {
-    float* force = &out.force[i].x;
-    atomicAdd(force, s.x);
-    atomicAdd(force + 1, s.y);
-    atomicAdd(force + 2, s.z);
+    add_vector(&out.force[i], s.x, s.y, s.z);
     if (ENERGY) {
         atomicAdd(&out.energy[i], s.energy);
         atomicAdd(&out.virial[i], s.virial);

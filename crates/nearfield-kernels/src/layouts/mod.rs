@@ -1,10 +1,12 @@
 //! The structures that kernels take, one file a subject.
 
+mod clusters;
 mod grid;
 mod particles;
 mod physics;
 mod tracing;
 
+pub use clusters::*;
 pub use grid::*;
 pub use particles::*;
 pub use physics::*;
@@ -18,7 +20,13 @@ pub fn header() -> String {
         "// Generated from nearfield-kernels/src/layouts by `cargo xtask ptx`; edit there.\n\n#pragma once\n\n\
          #include \"base.cuh\"\n",
     );
-    let files = [physics::definitions(), particles::definitions(), grid::definitions(), tracing::definitions()];
+    let files = [
+        physics::definitions(),
+        particles::definitions(),
+        grid::definitions(),
+        clusters::definitions(),
+        tracing::definitions(),
+    ];
     for Definition { text: definition } in files.iter().flatten() {
         text.push('\n');
         text.push_str(definition);

@@ -44,17 +44,52 @@ layouts! {
         pub margin: f32,
     }
 
+    /// Spheres or squares around particles and the rays that meet them (paper B), whose origins are not their
+    /// particles. Zero where bodies are boxes.
+    pub struct Geometry {
+        /// Least coordinates that bodies and rays are given, whatever those of particles.
+        pub lo: [f32; 3],
+        /// Greatest coordinates.
+        pub hi: [f32; 3],
+        /// Radius of spheres; half the side of squares.
+        pub body: f32,
+        /// Distance of squares from their particle along x, and of rays from theirs along y and z.
+        pub offset: f32,
+        /// How far beyond their diagonal the triangles of a square reach.
+        pub overlap: f32,
+        /// From the particle to the beginning of its rays, along them.
+        pub start: f32,
+        /// Length of rays.
+        pub length: f32,
+        /// Zero.
+        pub unused: u32,
+    }
+
+    /// Arguments of `fit_spheres` and `fit_squares`.
+    pub struct BodiesArgs {
+        /// As for boxes, of which there are none.
+        pub boxes: BoxesArgs,
+        /// Sizes and places.
+        pub geometry: Geometry,
+        /// Centres of spheres around each particle, then each ghost, `[n + n_ghosts]`.
+        pub centers: Ptr<Float4>,
+        /// Vertices of the triangles of squares, `[n + n_ghosts][2][2][3][3]`: by square, triangle, vertex and axis.
+        pub vertices: Ptr<f32>,
+    }
+
     /// What rays need to know.
     pub struct Rays {
         /// The interaction.
         pub law: Law,
         /// The box.
         pub space: Box3,
-        /// The particles, each with a ray from its position and a box around it.
+        /// The particles, each with a ray from its position and a box around it, or what `geometry` says.
         pub particles: Particles,
+        /// Bodies other than boxes.
+        pub geometry: Geometry,
         /// What rays are traced against.
         pub handle: u64,
-        /// Mirror particles, whose boxes follow those of the particles.
+        /// Mirror particles, whose bodies follow those of the particles.
         pub ghost: Ptr<Ghost>,
         /// How rays see periodic images: 0 by gamma rays, 1 in instances, 2 as ghosts.
         pub view: u32,
@@ -72,7 +107,7 @@ layouts! {
         pub first: u32,
     }
 
-    /// Parameters of the programs in `ray_gather` and `ray_scatter`.
+    /// Parameters of the programs in `ray_gather`, `axis_gather`, `edge_gather` and `ray_scatter`.
     pub struct ForceRays {
         /// The rays.
         pub rays: Rays,
@@ -96,7 +131,7 @@ layouts! {
         pub step: u64,
     }
 
-    /// Parameters of the programs in `ray_list`.
+    /// Parameters of the programs in `ray_list`, `axis_list` and `edge_list`.
     pub struct ListRays {
         /// The rays.
         pub rays: Rays,

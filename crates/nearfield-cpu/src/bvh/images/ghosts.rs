@@ -1,4 +1,4 @@
-//! Ghosts (tutorial C): particles whose box pokes over a face appear once more on the other side, as slots of their
+//! Ghosts (tutorial C): particles that are seen over a face appear once more on the other side, as slots of their
 //! own behind the real ones. Queries then need no second ray.
 //!
 //! The set is frozen between builds, so it is drawn with a margin for motion. A particle within the margin of a face
@@ -129,11 +129,12 @@ impl Ghosts {
         }
     }
 
-    /// Whether every image needed at the positions that `tree` was fitted to exists.
-    pub fn suffice(&self, tree: &Tree, slots: &Slots, input: &Input) -> bool {
+    /// Whether every image needed at the positions that `tree` was fitted to exists. Particles are seen up to
+    /// `beyond_body` further than their boxes in the tree reach.
+    pub fn suffice(&self, tree: &Tree, slots: &Slots, input: &Input, beyond_body: f32) -> bool {
         let slack = coordinate_slack(input.sim_box);
         // Most leaves are far from all faces as a whole. Twice the slack, because their boxes are rounded once more.
-        let interior = interior(input.sim_box, 2.0 * slack);
+        let interior = interior(input.sim_box, 2.0 * slack + beyond_body);
         let slot_suffices = |slot: usize| {
             let particle = slots.particle[slot];
             particle == u32::MAX || {

@@ -26,9 +26,9 @@ impl Instances {
         }
     }
 
-    /// The images whose box `query` overlaps, as bits.
+    /// The images whose box any of `rays` overlaps, as bits.
     #[inline(always)]
-    pub fn visible(&self, query: &Aabb) -> u32 {
-        self.top[0].overlap(query) | self.top[1].overlap(query) << LANES
+    pub fn visible<const N: usize>(&self, rays: &[Aabb; N]) -> u32 {
+        self.top[0].overlap_any(rays) | self.top[1].overlap_any(rays) << LANES
     }
 }

@@ -16,7 +16,7 @@ pub(super) struct Scene<'a> {
     pub sim_box: &'a SimBox,
     /// The box of the whole tree.
     pub root: Aabb,
-    /// The largest half width of a particle's box.
+    /// How far the largest particle is seen on each axis.
     pub largest: f32,
 }
 
@@ -46,12 +46,13 @@ impl Views {
         }
     }
 
-    /// The images in which the tree is to be traced for `query`: bit `b` is entry `b` of [`SimBox::images`].
+    /// The images in which the tree is to be traced for the points in `query`, which send `rays`: bit `b` is entry `b`
+    /// of [`SimBox::images`].
     #[inline(always)]
-    pub fn visible(&self, query: &Aabb) -> u32 {
+    pub fn visible<const N: usize>(&self, query: &Aabb, rays: &[Aabb; N]) -> u32 {
         match self {
             Self::Gamma(gamma) => gamma.visible(query),
-            Self::Instances(instances) => instances.visible(query),
+            Self::Instances(instances) => instances.visible(rays),
             Self::Ghosts(_) => 1,
         }
     }

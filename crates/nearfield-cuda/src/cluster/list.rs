@@ -1,0 +1,278 @@
+//! Lists of what is near each cluster, and forces and steps by them.
+
+use crate::{
+    Buffer, Gpu,
+    engine::{physics::Physics, state::State},
+    gpu::launch,
+    grid::Grid,
+};
+use bytemuck::Zeroable;
+use nearfield_core::{Report, Result};
+use nearfield_kernels::{
+    Float4, Ptr,
+    kernels::{self, CLUSTER, LISTED_FORCES, SEGMENT, StepKernels},
+    layouts::{
+        self, ClusterControl, ClusterListArgs, ClusterStepArgs, ClustersMovedArgs, GatherArgs, Integrator, Law,
+        ListedArgs, Results, Segment, Status,
+    },
+};
+use std::sync::Arc;
+
+/// Entries of a chunk.
+const CHUNK: u64 = 32;
+
+const BYTES_PER_CHUNK: u64 = CHUNK * size_of::<u32>() as u64;
+
+/// Chunks of a cluster for which there is room at first.
+const FIRST_CHUNKS: u64 = 8;
+
+/// Steps that a list is first thought to serve for.
+const FIRST_LIFE: u64 = 8;
+
+/// Steps enqueued beyond those that the list is thought to serve for: one that does nothing costs less than a wait.
+const SPARE_STEPS: u64 = 2;
+
+/// Most steps enqueued at a time.
+const MOST_STEPS: u64 = 100;
+
+/// Lists for the particles in memory order, of everything within range and skin.
+pub(crate) struct ClusterList {
+    gpu: Arc<dyn Gpu>,
+    skin: f32,
+    /// How far particles may move while a list serves.
+    limit: f32,
+    segment: Buffer<Segment>,
+    entry: Buffer<u32>,
+    control: Buffer<ClusterControl>,
+    valid: bool,
+    /// Whether it is known that there was room for the list.
+    settled: bool,
+    /// Whether the list serves the present positions, where that is known without looking at them.
+    known: Option<bool>,
+    /// Evaluations since the list was built.
+    age: u64,
+    /// Steps that the last list served for.
+    life: u64,
+}
+
+/// What steps need beside the list.
+pub(crate) struct StepQuery<'a> {
+    pub physics: &'a Physics,
+    pub state: &'a mut State,
+    /// Where positions go.
+    pub next: &'a mut Buffer<Float4>,
+    pub integrator: Integrator,
+    pub status: Ptr<Status>,
+    pub kernels: StepKernels,
+}
+
+impl ClusterList {
+    /// No list yet, with a skin as far as the box allows it: no pair may be within range and skin at two images.
+    pub fn new(gpu: &Arc<dyn Gpu>, skin: f32, physics: &Physics) -> Self {
+        let lengths = physics.sim_box.lengths();
+        let room = (0..3)
+            .filter(|&axis| physics.sim_box.is_periodic(axis))
+            .map(|axis| 0.5 * lengths[axis] * (1.0 - 4.0 * f32::EPSILON) - physics.largest)
+            .fold(f32::INFINITY, f32::min);
+        let skin = skin.min(room).max(0.0);
+        // The margins cover roundings of displacements and of coordinates.
+        let limit = 0.5 * skin * (1.0 - 1e-5) - physics.slack;
+        Self {
+            gpu: gpu.clone(),
+            skin: if limit > 0.0 { skin } else { 0.0 },
+            limit: limit.max(0.0),
+            segment: Buffer::new(gpu, "lists of clusters"),
+            entry: Buffer::new(gpu, "lists of clusters"),
+            control: Buffer::new(gpu, "lists of clusters"),
+            valid: false,
+            settled: false,
+            known: None,
+            age: 0,
+            life: FIRST_LIFE,
+        }
+    }
+
+    pub fn skin(&self) -> f32 {
+        self.skin
+    }
+
+    /// Forgets the list.
+    pub fn invalidate(&mut self) {
+        self.valid = false;
+    }
+
+    /// Whether the list still holds every pair. Waits for the device unless the last steps were by the list.
+    pub fn is_fresh(&mut self, physics: &Physics, state: &State, grid: &Grid) -> Result<bool> {
+        self.age += 1;
+        let known = self.known.take();
+        if !self.valid || self.skin == 0.0 {
+            return Ok(false);
+        }
+        if let Some(fresh) = known {
+            return Ok(fresh);
+        }
+        let arguments = ClustersMovedArgs {
+            space: physics.space,
+            position: state.moving.position.ptr(),
+            reference: grid.slots(),
+            control: self.control.ptr(),
+            n: state.len() as u32,
+            limit2: self.limit * self.limit,
+        };
+        // SAFETY: the arrays have n elements each.
+        unsafe { launch(&*self.gpu, kernels::CLUSTERS_MOVED, state.len() as u64, &arguments)? };
+        Ok(self.control()?.rebuild_at > 0)
+    }
+
+    /// Enqueues the listing of what is near each cluster of particles in the order of `grid`, which was built for range
+    /// and skin. Whether there was room for it is seen later: by [`ClusterList::settle`], or at the end of steps.
+    pub fn build(
+        &mut self,
+        physics: &Physics,
+        state: &State,
+        grid: &Grid,
+        budget: u64,
+        report: &mut Report,
+    ) -> Result<()> {
+        let first = state.len().div_ceil(CLUSTER) as u64 * FIRST_CHUNKS;
+        self.enqueue(physics, state, grid, self.room().max(first).min(budget / BYTES_PER_CHUNK))?;
+        report.list_builds += 1;
+        if self.age == 1 && self.skin > 0.0 && report.list_builds > 1 {
+            report.dangerous_builds += 1;
+        }
+        self.life = self.age.max(1);
+        self.age = 0;
+        (self.valid, self.settled) = (true, false);
+        Ok(())
+    }
+
+    /// Waits for the list that is being built and builds it again where there was no room; gives whether it fits the
+    /// budget.
+    pub fn settle(&mut self, physics: &Physics, state: &State, grid: &Grid, budget: u64) -> Result<bool> {
+        while !self.settled {
+            let needed = u64::from(self.control()?.chunks);
+            if needed * BYTES_PER_CHUNK > budget {
+                self.entry.resize(0)?;
+                self.valid = false;
+                return Ok(false);
+            }
+            self.settled = needed <= self.room();
+            if !self.settled {
+                // Lists of other moments may be longer.
+                self.enqueue(physics, state, grid, (needed + needed / 8).min(budget / BYTES_PER_CHUNK))?;
+            }
+        }
+        Ok(true)
+    }
+
+    /// Chunks that there is room for.
+    fn room(&self) -> u64 {
+        self.entry.len() as u64 / CHUNK
+    }
+
+    /// Enqueues the listing with room for so many chunks.
+    fn enqueue(&mut self, physics: &Physics, state: &State, grid: &Grid, room: u64) -> Result<()> {
+        let n_clusters = state.len().div_ceil(CLUSTER);
+        self.entry.resize((room * CHUNK) as usize)?;
+        self.segment.resize(n_clusters + room as usize / SEGMENT)?;
+        let nothing_yet = ClusterControl { rebuild_at: u64::MAX, done: u64::MAX, ..ClusterControl::zeroed() };
+        self.control.upload(&[nothing_yet])?;
+        let arguments = ClusterListArgs {
+            law: Law { cutoff: physics.law.cutoff + self.skin, ..physics.law },
+            space: physics.space,
+            grid: grid.layout_in_memory_order(state.moving.position.ptr()),
+            segment: self.segment.ptr(),
+            entry: self.entry.ptr(),
+            control: self.control.ptr(),
+            n: state.len() as u32,
+            n_clusters: n_clusters as u32,
+            capacity: room as u32,
+            segment_capacity: self.segment.len() as u32,
+            slack: grid.slack(),
+            margin: 0.5 * self.skin + physics.slack,
+        };
+        // SAFETY: positions are n, sorted by the grid's cells; segments and entries have room for what is said.
+        unsafe { launch(&*self.gpu, kernels::LIST_CLUSTERS, 32 * n_clusters as u64, &arguments) }
+    }
+
+    /// Enqueues the forces on all particles.
+    pub fn forces(&self, physics: &Physics, state: &State, results: Results, exact: bool, energy: bool) -> Result<()> {
+        let kernel = LISTED_FORCES.choose(&physics.law, exact, energy);
+        let arguments = self.listed(physics, state, results);
+        let n_clusters = state.len().div_ceil(CLUSTER) as u64;
+        // SAFETY: particles and results are n, in the order that the list was made in.
+        unsafe { launch(&*self.gpu, kernel, 32 * n_clusters, &arguments) }
+    }
+
+    /// Makes steps from forces at `step` on, at most `most`, at positions that the list serves; waits for the device to
+    /// know how many there were. None are made where there was no room for the list: it is to be settled first.
+    pub fn steps(&mut self, query: StepQuery, grid: &Grid, step: u64, most: u64) -> Result<u64> {
+        let StepQuery { physics, state, next, integrator, status, kernels } = query;
+        let n = state.len();
+        next.resize(n)?;
+        let asked = (self.life.saturating_sub(self.age) + SPARE_STEPS).clamp(1, MOST_STEPS.min(most));
+        let kernel = if physics.law.is_plain_lennard_jones() { kernels.uniform_lj } else { kernels.any };
+        let threads = 32 * n.div_ceil(CLUSTER).div_ceil(kernels.clusters) as u64;
+        for step in step..step + asked {
+            let arguments = ClusterStepArgs {
+                listed: self.listed(physics, state, Results::default()),
+                integrator,
+                particles: state.particles(),
+                next: next.ptr(),
+                reference: grid.slots(),
+                status,
+                control: self.control.ptr(),
+                step,
+                limit2: self.limit * self.limit,
+                unused: 0,
+            };
+            // SAFETY: all arrays of particles have n elements.
+            unsafe { launch(&*self.gpu, kernel, threads, &arguments)? };
+            std::mem::swap(&mut state.moving.position, next);
+        }
+        let ClusterControl { rebuild_at, done, chunks, .. } = self.control()?;
+        self.settled = u64::from(chunks) <= self.room();
+        // Without particles nothing is done, and nothing is to do.
+        let made = match (n, self.settled) {
+            (0, _) => asked,
+            (_, true) => done - step + 1,
+            (_, false) => 0,
+        };
+        if (asked - made) % 2 == 1 {
+            std::mem::swap(&mut state.moving.position, next);
+        }
+        if made == 0 {
+            return Ok(0);
+        }
+        self.known = Some(rebuild_at > step + made);
+        // The first evaluation was booked when freshness was asked for.
+        self.age += made - 1;
+        Ok(made)
+    }
+
+    fn listed(&self, physics: &Physics, state: &State, results: Results) -> ListedArgs {
+        let grid = layouts::Grid { n_classes: 1, slot: state.moving.position.ptr(), ..Default::default() };
+        ListedArgs {
+            gather: GatherArgs {
+                law: physics.law,
+                space: physics.space,
+                grid,
+                velocity: state.moving.velocity.ptr(),
+                results,
+                n: state.len() as u32,
+                slack: 0.0,
+            },
+            segment: self.segment.ptr(),
+            entry: self.entry.ptr(),
+        }
+    }
+
+    fn control(&self) -> Result<ClusterControl> {
+        Ok(self.control.download()?.pop().unwrap_or_else(ClusterControl::zeroed))
+    }
+
+    /// Bytes held on the device.
+    pub fn bytes(&self) -> u64 {
+        self.segment.bytes() + self.entry.bytes() + self.control.bytes()
+    }
+}

@@ -1,0 +1,113 @@
+//! Lists of what is near clusters of consecutive particles, and steps by them.
+
+use super::{
+    grid::{GatherArgs, Grid},
+    particles::{Integrator, Particles, Status},
+    physics::{Box3, Law},
+};
+use crate::layout::{Float4, Ptr, layouts};
+
+layouts! {
+    /// Consecutive chunks of 32 entries of a cluster's list.
+    pub struct Segment {
+        /// First chunk.
+        pub begin: u32,
+        /// The chunk after the last.
+        pub end: u32,
+        /// The segment where the list goes on; all ones where it ends.
+        pub next: u32,
+        /// Zero.
+        pub unused: u32,
+    }
+
+    /// What kernels tell each other and the host about a list.
+    pub struct ClusterControl {
+        /// The first step whose positions the list may not serve; all ones while none is known, zero where there was no
+        /// room for the list.
+        pub rebuild_at: u64,
+        /// The last step that was computed by the list.
+        pub done: u64,
+        /// Chunks of all lists.
+        pub chunks: u32,
+        /// Segments beyond the first of each cluster.
+        pub segments: u32,
+    }
+
+    /// Arguments of `list_clusters`.
+    pub struct ClusterListArgs {
+        /// The interaction, its cutoff longer by the skin.
+        pub law: Law,
+        /// The box.
+        pub space: Box3,
+        /// Cells of particles in memory order.
+        pub grid: Grid,
+        /// One for each cluster, then those that follow, `[segment_capacity]`.
+        pub segment: Ptr<Segment>,
+        /// Entries, `[capacity][32]`.
+        pub entry: Ptr<u32>,
+        /// Chunks and segments are counted from zero, beyond what there is room for.
+        pub control: Ptr<ClusterControl>,
+        /// Number of particles.
+        pub n: u32,
+        /// Number of clusters.
+        pub n_clusters: u32,
+        /// Chunks that there is room for.
+        pub capacity: u32,
+        /// Segments that there is room for.
+        pub segment_capacity: u32,
+        /// Added to ranges so that roundings lose no candidate.
+        pub slack: f32,
+        /// How near a periodic face a particle may cross it while the list serves.
+        pub margin: f32,
+    }
+
+    /// Arguments of `listed_*`: forces of all particles.
+    pub struct ListedArgs {
+        /// As for all kernels that gather forces, of particles in memory order.
+        pub gather: GatherArgs,
+        /// See [`ClusterListArgs`].
+        pub segment: Ptr<Segment>,
+        /// See [`ClusterListArgs`].
+        pub entry: Ptr<u32>,
+    }
+
+    /// Arguments of `step_*`: forces, and with them a step of all particles.
+    pub struct ClusterStepArgs {
+        /// Where forces come from; results are not stored.
+        pub listed: ListedArgs,
+        /// How particles move.
+        pub integrator: Integrator,
+        /// The particles.
+        pub particles: Particles,
+        /// Where positions go.
+        pub next: Ptr<Float4>,
+        /// Positions that the list was made for.
+        pub reference: Ptr<Float4>,
+        /// What went wrong.
+        pub status: Ptr<Status>,
+        /// Whether the list serves.
+        pub control: Ptr<ClusterControl>,
+        /// The step that the forces belong to.
+        pub step: u64,
+        /// Square of the distance that particles may move while the list serves.
+        pub limit2: f32,
+        /// Zero.
+        pub unused: u32,
+    }
+
+    /// Arguments of `clusters_moved`: whether a list serves the present positions.
+    pub struct ClustersMovedArgs {
+        /// The box.
+        pub space: Box3,
+        /// Positions.
+        pub position: Ptr<Float4>,
+        /// Positions that the list was made for.
+        pub reference: Ptr<Float4>,
+        /// `rebuild_at` becomes zero where the list does not serve.
+        pub control: Ptr<ClusterControl>,
+        /// Number of particles.
+        pub n: u32,
+        /// Square of the distance that particles may move.
+        pub limit2: f32,
+    }
+}
