@@ -34,7 +34,7 @@ pub(crate) struct Output<'a> {
     pub neighbors: &'a mut [u32],
 }
 
-/// Sums of one task, `[n_blocks]`, of which only the touched pages mean anything.
+/// Sums of one task, `[n_blocks]` or longer, of which only the touched pages mean anything.
 #[derive(Default)]
 struct TaskSums {
     force: Vec<Octet>,
@@ -59,11 +59,12 @@ fn page(p: u32, n_blocks: usize) -> std::ops::Range<usize> {
     p as usize * PAGE..((p as usize + 1) * PAGE).min(n_blocks)
 }
 
-/// Makes `values` as long as asked for and clears the touched pages.
+/// Makes `values` no shorter than `n` and clears the touched pages.
 fn clear<T: Copy + Default>(values: &mut Vec<T>, touched: &[u32], n: usize) {
-    if values.len() != n {
-        // Zeros that nobody has written take no memory: most pages are other tasks'.
-        *values = vec![T::default(); n];
+    if values.len() < n {
+        // Zeros that nobody has written take no memory: most pages are other tasks'. With some to spare, for the number
+        // of blocks varies from list to list.
+        *values = vec![T::default(); n + n / 8];
     } else {
         touched.iter().for_each(|&p| values[page(p, n)].fill(T::default()));
     }
