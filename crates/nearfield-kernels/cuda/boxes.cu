@@ -18,7 +18,7 @@ KERNEL(fit_boxes, BoxesArgs, 256) {
     const u32 k = thread_index();
     if (k >= a.n + a.n_ghosts) return;
     const Ghost self = k < a.n ? Ghost{k, HOME_IMAGE} : a.ghost[k - a.n];
-    const float4 x = a.position[self.particle];
+    const float4 x = seen(a.space, a.position[self.particle]);
     const float half = half_width(a, x);
     const Shift s = shift_of(a.space, self.image);
     float* box = a.boxes + 6 * (u64)k;

@@ -27,7 +27,8 @@ const DEVICES: [&str; 2] = ["cpu", "cuda"];
 
 /// Every method on every kind of device, whether this machine has one or not ([`crate::devices`] says so).
 pub fn methods() -> Vec<MethodSupport> {
-    DEVICES.iter().flat_map(|&device| Method::ALL.iter().map(move |&method| support(method, device))).collect()
+    let everywhere = |device| Method::ALL.iter().map(move |&method| support(method, device));
+    DEVICES.iter().flat_map(|&device| everywhere(device)).collect()
 }
 
 fn support(method: Method, device: &'static str) -> MethodSupport {

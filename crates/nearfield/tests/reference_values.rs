@@ -6,8 +6,8 @@
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use nearfield::{
-    Boundary, Device, Images, Interaction, Method, Particles, PerParticle, Plan, Quantities, Radii, SimBox, System,
-    Truncation, config::Config, engine, file_system,
+    Boundary, Device, Images, Interaction, Particles, PerParticle, Plan, Quantities, Radii, SimBox, System, Truncation,
+    config::Config, engine, file_system,
 };
 use std::{
     fs,
@@ -19,7 +19,7 @@ fn main() {
         .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"), PathBuf::from);
     let is_absent = !data.is_dir();
     let mut trials = Vec::new();
-    for &method in Method::ALL {
+    for method in nearfield::methods().into_iter().filter(|row| row.device == "cpu").map(|row| row.method) {
         let images: &[Images] = if method.uses_bvh() { Images::ALL } else { &[Images::Gamma] };
         for &images in images {
             let plan = Plan { images, ..Plan::new(method) };

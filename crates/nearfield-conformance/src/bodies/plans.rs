@@ -36,6 +36,9 @@ pub fn loading_forgets_the_system_before(factory: Factory) {
     let (large, small) = (cases::liquid(4, 1.0, 0.1, 2.5, 3), cases::liquid(3, 1.0, 0.1, 2.2, 4));
     for plan in plans::deterministic(plans::each_structure()) {
         let mut used = factory();
+        if used.supports(&large, &plan).is_err() {
+            continue;
+        }
         for system in [&large, &small, &large] {
             let mut fresh = factory();
             let (mut expected, mut found) = (PerParticle::default(), PerParticle::default());

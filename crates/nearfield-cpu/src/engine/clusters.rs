@@ -38,7 +38,13 @@ impl StoredClusters {
             .map(|axis| 0.5 * lengths[axis] - radii.largest())
             .fold(f32::INFINITY, f32::min);
         let listing = if radii.is_uniform() { Listing::Possible } else { Listing::DifferentRadii };
-        Self { clusters: Clusters::default(), skin: plan.skin.min(room).max(0.0), listing, age: 0, ended: AtomicBool::new(false) }
+        Self {
+            clusters: Clusters::default(),
+            skin: plan.skin.min(room).max(0.0),
+            listing,
+            age: 0,
+            ended: AtomicBool::new(false),
+        }
     }
 }
 

@@ -11,7 +11,8 @@
 struct PointRays {
     template <int WORDS>
     __device__ static void send(const Rays& rays, const float4& x, const Shift& s, u32 (&payload)[WORDS]) {
-        rt::trace_point(rays.handle, x.x - s.x, x.y - s.y, x.z - s.z, payload);
+        const float4 p = seen(rays.space, x);
+        rt::trace_point(rays.handle, p.x - s.x, p.y - s.y, p.z - s.z, payload);
     }
 
     __device__ static Meeting meet(const Rays& rays) {

@@ -16,6 +16,17 @@ __device__ inline Shift shift_of(const Box3& space, u32 image) {
             (float)((int)(image / 9) - 1) * space.length[2]};
 }
 
+// Where structures see a particle: on open axes it may be anywhere, and those who trace rays lose far ones to rounding.
+// That brings no two particles further apart on any axis, so neighbours stay where they are found.
+__device__ inline float seen_axis(const Box3& space, int axis, float x) {
+    const float beyond = 1024.0f * space.length[axis];
+    return fminf(fmaxf(x, space.lo[axis] - beyond), space.hi[axis] + beyond);
+}
+
+__device__ inline float4 seen(const Box3& space, const float4& x) {
+    return make_float4(seen_axis(space, 0, x.x), seen_axis(space, 1, x.y), seen_axis(space, 2, x.z), x.w);
+}
+
 __device__ inline float squared_length(float x, float y, float z) {
     return fmaf(x, x, fmaf(y, y, z * z));
 }

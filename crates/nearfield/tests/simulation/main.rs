@@ -6,7 +6,9 @@ mod dynamics;
 mod observers;
 mod reference_state;
 
-use nearfield::{Boundary, Interaction, Radii, Simulation, SimulationBuilder, System, Truncation, generate::Generate};
+use nearfield::{
+    Boundary, Interaction, Method, Radii, Simulation, SimulationBuilder, System, Truncation, generate::Generate,
+};
 
 /// An fcc crystal of n particles with velocities, cutoff 2.5, periodic.
 fn crystal(n: usize, density: f64, temperature: f64) -> System {
@@ -25,6 +27,10 @@ fn smooth(n: usize, density: f64, temperature: f64) -> System {
     let mut system = crystal(n, density, temperature);
     system.interaction.truncation = Truncation::Force;
     system
+}
+
+fn methods_of_the_cpu() -> impl Iterator<Item = Method> {
+    nearfield::methods().into_iter().filter(|row| row.device == "cpu").map(|row| row.method)
 }
 
 fn build(builder: SimulationBuilder) -> Simulation {

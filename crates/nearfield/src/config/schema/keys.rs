@@ -109,7 +109,7 @@ const TYPE: &[Key] = &[
 ];
 
 const METHOD: &[Key] = &[
-    key("name", Accepts::Names(|| or_auto(Method::ALL.iter().map(|m| m.name()))), "how pairs are found"),
+    key("name", Accepts::Names(|| or_auto(Method::ALL.iter().map(|m| m.name()))), "method"),
     key(
         "device",
         Accepts::Names(|| vec!["auto", "cpu", "cuda", "cuda:N"]),
