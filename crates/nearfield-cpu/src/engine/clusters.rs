@@ -46,9 +46,7 @@ impl StoredClusters {
             ended: AtomicBool::new(false),
         }
     }
-}
 
-impl StoredClusters {
     /// Has list and forces made anew before the next step. Another engine that takes the particles over has no list: the
     /// order of sums, which is that of the list, would tell it from this one.
     pub fn end(&self) {
@@ -59,7 +57,8 @@ impl StoredClusters {
     pub fn forget_if_ended(&mut self) -> bool {
         let ended = std::mem::take(self.ended.get_mut());
         if ended {
-            self.clusters.invalidate();
+            // With what it has learned of the particles' motion.
+            self.clusters = Clusters::default();
         }
         ended
     }
