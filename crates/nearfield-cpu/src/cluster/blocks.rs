@@ -241,7 +241,6 @@ impl lanes::Kernel for Refresh<'_> {
     type Output = bool;
 
     #[inline(always)]
-    #[expect(clippy::needless_range_loop, reason = "flat loops over lanes, which the compiler vectorises")]
     fn run<L: lanes::Lanes>(self, _: L) -> bool {
         let Self { first, at_build, at_prune, budget, position, period, to, crossings, crossed } = self;
         let mut all_kept = true;

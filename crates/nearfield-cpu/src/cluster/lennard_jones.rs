@@ -71,7 +71,6 @@ impl Law for Plain {
     }
 
     #[inline(always)]
-    #[expect(clippy::needless_range_loop, reason = "no closures in kernels")]
     fn f_over_r<L: Lanes, const K: usize>(&self, lanes: L, y: &[L::F; K], c: &[[L::F; 4]; K]) -> [L::F; K] {
         let (mut y2, mut y3) = (*y, *y);
         for k in 0..K {
@@ -280,7 +279,6 @@ impl<P: Law> View<'_, P> {
     /// The pairs of a cluster and one block (`K` = 2 vectors) or two (`K` = 4): all lanes, or where `MASKED` those of
     /// `pairs`. Without `SHIFTED` none has an image.
     #[inline(always)]
-    #[expect(clippy::needless_range_loop, reason = "no closures in kernels")]
     fn add<L: Lanes, const K: usize, const ENERGY: bool, const SHIFTED: bool, const MASKED: bool>(
         &self,
         lanes: L,

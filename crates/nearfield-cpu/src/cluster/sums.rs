@@ -174,7 +174,7 @@ impl PageSums {
     /// Writes the sums that `total` gives for each block, from the tasks that touch it, to where they go.
     fn hand_out(&self, blocks: &Blocks, out: Output, total: impl Fn(&[u32], usize) -> (Octet, Exact) + Sync) -> bool {
         let energies = !out.energy.is_empty();
-        let force = out.force.map(|axis| Scattered::new(axis));
+        let force = out.force.map(Scattered::new);
         let (energy, virial) = (Scattered::new(out.energy), Scattered::new(out.virial));
         let neighbors = Scattered::new(out.neighbors);
         let finite = AtomicBool::new(true);
