@@ -115,37 +115,34 @@ impl Structure {
     /// Enqueues the forces.
     pub fn evaluate(&mut self, query: Query, scene: &Scene) -> Result<()> {
         let Query { plan, physics, state, results, energy, report } = query;
+        let sums = Sums { exact: plan.deterministic, energy };
         match self {
             Self::Brute => {
                 let candidates = Candidates::All { position: scene.particles.position, n: state.len() };
-                by_candidates(candidates, plan, physics, state, results, energy)
+                by_candidates(candidates, sums, results, scene)
             }
-            Self::Cells(grid) => by_candidates(Candidates::Cells(grid), plan, physics, state, results, energy),
+            Self::Cells(grid) => by_candidates(Candidates::Cells(grid), sums, results, scene),
             Self::Clusters(clusters) => {
                 clusters.settle(physics, state, report)?;
                 let scatters = clusters.scatters();
-                if scatters {
-                    results.zero(plan.deterministic)?;
-                }
-                clusters.forces(physics, state, results.layout(), energy, report)?;
-                if scatters && plan.deterministic {
-                    results.finish_exact(&**state.gpu(), &physics.law)?;
-                }
-                Ok(())
+                summed(scene, scatters, plan.deterministic, results, |results| {
+                    clusters.forces(physics, state, results, energy, report)
+                })
             }
-            Self::Bodies(bvh) if plan.method == Method::RtForces => {
-                scatter(bvh, Sums { exact: plan.deterministic, energy }, results, scene)
-            }
-            Self::Bodies(bvh) => bvh.gather(scene, Sums { exact: plan.deterministic, energy }, results.layout()),
+            Self::Bodies(bvh) if plan.method == Method::RtForces => scatter(bvh, sums, results, scene),
+            Self::Bodies(bvh) => bvh.gather(scene, sums, results.layout()),
             Self::List(bvh, list) => {
-                let sums = Sums { exact: plan.deterministic, energy };
                 let mut outcome = list.gather(bvh, scene, sums, results.layout(), plan.memory_budget, report)?;
                 if outcome == Outcome::NeedsBuildWithoutSkin {
                     bvh.update(Action::Build, scene)?;
                     report.builds += 1;
                     outcome = list.gather(bvh, scene, sums, results.layout(), plan.memory_budget, report)?;
                 }
-                if outcome == Outcome::NeedsScatter { scatter(bvh, sums, results, scene) } else { Ok(()) }
+                match outcome {
+                    Outcome::NeedsNoList if scene.law.variable != 0 => scatter(bvh, sums, results, scene),
+                    Outcome::NeedsNoList => bvh.gather(scene, sums, results.layout()),
+                    _ => Ok(()),
+                }
             }
         }
     }
@@ -182,40 +179,37 @@ impl Structure {
 }
 
 /// Forces by a warp for each few particles.
-fn by_candidates(
-    candidates: Candidates,
-    plan: &Plan,
-    physics: &Physics,
-    state: &State,
-    results: &mut Results,
-    energy: bool,
-) -> Result<()> {
-    let (gpu, scatters) = (state.gpu(), candidates.scatters(Pairs::Directed));
-    if scatters {
-        results.zero(plan.deterministic)?;
-    }
-    let query = ForceQuery {
-        law: physics.law,
-        space: physics.space,
-        velocity: state.moving.velocity.ptr(),
-        results: results.layout(),
-        energy,
-        exact: plan.deterministic,
-        pairs: Pairs::Directed,
-    };
-    // SAFETY: the arrays of particles and results have n elements each.
-    unsafe { grid::forces(&**gpu, candidates, &query)? };
-    if scatters && plan.deterministic {
-        results.finish_exact(&**gpu, &physics.law)?;
-    }
-    Ok(())
+fn by_candidates(candidates: Candidates, sums: Sums, results: &mut Results, scene: &Scene) -> Result<()> {
+    summed(scene, candidates.scatters(Pairs::Directed), sums.exact, results, |results| {
+        let query = ForceQuery {
+            law: scene.law,
+            space: scene.space,
+            velocity: scene.particles.velocity,
+            results,
+            energy: sums.energy,
+            exact: sums.exact,
+            pairs: Pairs::Directed,
+        };
+        // SAFETY: the arrays of particles and results have n elements each.
+        unsafe { grid::forces(&**scene.gpu, candidates, &query) }
+    })
 }
 
 fn scatter(bvh: &Bvh, sums: Sums, results: &mut Results, scene: &Scene) -> Result<()> {
-    results.zero(sums.exact)?;
-    bvh.scatter(scene, sums, results.layout())?;
-    if sums.exact {
-        results.finish_exact(&**scene.gpu, &scene.law)?;
+    summed(scene, true, sums.exact, results, |results| bvh.scatter(scene, sums, results))
+}
+
+/// Forces by `enqueue`; where it `scatters`, that is adds to sums, they are zero before, and numbers after.
+fn summed(
+    scene: &Scene,
+    scatters: bool,
+    exact: bool,
+    results: &mut Results,
+    enqueue: impl FnOnce(layouts::Results) -> Result<()>,
+) -> Result<()> {
+    if scatters {
+        results.zero(exact)?;
     }
-    Ok(())
+    enqueue(results.layout())?;
+    if scatters && exact { results.finish_exact(&**scene.gpu, &scene.law) } else { Ok(()) }
 }

@@ -1,5 +1,5 @@
-//! The neighbour list of `rt-list`: count, scan, fill, kept while the Verlet skin lasts, and processed in batches when it
-//! would not fit the memory budget.
+//! The neighbour list of `rt-list`: count, scan, fill, kept while the Verlet skin lasts. A list that would not fit the
+//! memory budget is processed in batches of rows, or, where these would leave the device idle, not stored at all.
 //!
 //! Rows hold no images: as ranges are at most half a periodic length, only the nearest image can be within range, which
 //! kernels find from the positions.
@@ -18,6 +18,11 @@ use std::{ops::Range, sync::Arc};
 
 /// Rows of this list.
 const ROWS: RowQuery = RowQuery { kind: ListKind::Full, numbers: RowNumbers::Place };
+
+/// Most batches: with more, a batch has too few rows to occupy the device, as each is a ray. In a cluster of 10⁶ particles
+/// that are nearly all neighbours, 1000 batches of 1000 rows took more than 260 s on an H200, and pairs consumed where they
+/// were found 12 s.
+const MAX_BATCHES: u64 = 64;
 
 const BYTES_PER_ENTRY: u64 = size_of::<u32>() as u64;
 
@@ -42,8 +47,9 @@ pub enum Outcome {
     /// The list is too large to be kept: the structure must be built again, without skin, for the query to be asked once
     /// more.
     NeedsBuildWithoutSkin,
-    /// The list is too large, and rows of per-particle radii cannot be completed in batches: [`Bvh::scatter`] does it.
-    NeedsScatter,
+    /// The list is too large, also for batches, or has rows of per-particle radii, which cannot be completed in batches:
+    /// pairs are to be consumed where rays find them.
+    NeedsNoList,
 }
 
 impl StoredList {
@@ -114,8 +120,8 @@ impl StoredList {
                     return Ok(Outcome::NeedsBuildWithoutSkin);
                 }
                 report.batched_evaluations += 1;
-                if scene.law.variable != 0 {
-                    return Ok(Outcome::NeedsScatter);
+                if scene.law.variable != 0 || entries.saturating_mul(BYTES_PER_ENTRY) / MAX_BATCHES > budget {
+                    return Ok(Outcome::NeedsNoList);
                 }
                 self.gather_in_batches(bvh, scene, sums, results, budget)?;
                 return Ok(Outcome::Done);

@@ -127,3 +127,14 @@ template <class L, bool EXACT, bool ENERGY, Meetings MEETINGS> struct Gather : C
         return sum_transposed(v);
     }
 };
+
+// Forces on the particles of a warp from candidates in cells.
+template <class L, bool EXACT, bool ENERGY, Meetings MEETINGS> __device__ inline void forces_by_cells(const GatherArgs& a) {
+    __shared__ Scratch scratch[WARPS_PER_BLOCK];
+    const ClusterPlace cluster = find_cluster(a.grid, a.n, thread_index() / WARP);
+    if (cluster.count == 0) return;
+    Gather<L, EXACT, ENERGY, MEETINGS> gather(a, cluster);
+    search_cells<!Traits<L>::ONE_RANGE>(a.grid, a.space, a.slack, cluster, cluster_bounds(gather.x),
+                                        scratch[threadIdx.x / WARP], gather);
+    gather.store();
+}

@@ -1,7 +1,7 @@
 // The list consumer: rows of neighbours, counted by one launch and filled by another.
 //
-// Where all radii are equal, the rays of a particle meet all of its neighbours and write their row alone. Where they
-// differ, the acting ray adds a pair to the rows of both.
+// The rays of a particle fill the front of its row, whose entries they count in the payload. Where radii differ, the
+// acting ray also adds the pair to the other's row, with atomic operations and from the back.
 
 #pragma once
 
@@ -20,32 +20,38 @@ template <class Probe, bool FILL> __device__ inline void list_rays(const ListRay
     const u32 i = list.rays.first + rt::ray_index();
     u32 payload[PAYLOAD_CONSUMER + 1] = {};
     send_rays<Probe>(list.rays, i, payload);
-    if (!FILL && !list.rays.law.variable) list.count[number_of(list, i)] = payload[PAYLOAD_CONSUMER];
+    if (FILL) return;
+    u32& count = list.count[number_of(list, i)];
+    if (list.rays.law.variable) {
+        atomicAdd(&count, payload[PAYLOAD_CONSUMER]);
+    } else {
+        count = payload[PAYLOAD_CONSUMER];
+    }
 }
 
-// Adds to a row that others add to.
-template <bool FILL> __device__ inline void add_entry(const ListRays& list, u32 row, u32 index, u32 image) {
-    if (!FILL) {
-        atomicAdd(&list.count[row], 1u);
-    } else {
+// Adds to the row of the particle whose ray it is.
+template <bool FILL> __device__ inline void add_own(const ListRays& list, u32 row, u32 index, u32 image) {
+    const u32 entries = rt::payload<PAYLOAD_CONSUMER>();
+    if (FILL) put(list, list.offset[row] + entries, index, image);
+    rt::set_payload<PAYLOAD_CONSUMER>(entries + 1);
+}
+
+// Adds to another row.
+template <bool FILL> __device__ inline void add_other(const ListRays& list, u32 row, u32 index, u32 image) {
+    if (FILL) {
         put(list, list.offset[row] + atomicSub(&list.count[row], 1u) - 1, index, image);
+    } else {
+        atomicAdd(&list.count[row], 1u);
     }
 }
 
 template <class Probe, bool FILL> __device__ inline void list_pair(const ListRays& list) {
     const Meeting m = Probe::meet(list.rays);
-    if (!m.near) return;
+    if (!m.near || (list.rays.law.variable && !acts(list.rays, m))) return;
     const u32 i = number_of(list, m.i), j = number_of(list, m.j);
-    if (list.rays.law.variable) {
-        if (!acts(list.rays, m)) return;
-        // Seen from j, i is in the opposite image.
-        if (!list.half || i < j) add_entry<FILL>(list, i, j, m.image);
-        if (!list.half || j < i) add_entry<FILL>(list, j, i, 26 - m.image);
-    } else if (!list.half || i < j) {
-        const u32 entries = rt::payload<PAYLOAD_CONSUMER>();
-        if (FILL) put(list, list.offset[i] + entries, j, m.image);
-        rt::set_payload<PAYLOAD_CONSUMER>(entries + 1);
-    }
+    if (!list.half || i < j) add_own<FILL>(list, i, j, m.image);
+    // Seen from j, i is in the opposite image.
+    if (list.rays.law.variable && (!list.half || j < i)) add_other<FILL>(list, j, i, 26 - m.image);
 }
 
 #define LIST_INTERSECTION(Probe, name, FILL)                                                                           \
