@@ -138,7 +138,8 @@ impl Loaded {
             + self.results.bytes()
             + self.scatter.bytes()
             + self.reference.bytes()
-            + self.list.bytes();
+            + self.list.bytes()
+            + self.clusters.clusters.bytes();
         Report { bytes: bytes as u64, ..self.report.clone() }
     }
 }
