@@ -3,6 +3,7 @@
 use crate::{
     Device, Error, Result, Thermo,
     auto::{Choice, Tuner},
+    energy::{EnergyMeter, attach_meter},
     engine,
     observe::{Observer, Sample},
     run::Checkpoint,
@@ -87,12 +88,14 @@ impl SimulationBuilder {
         let plan = Plan { method: choice.method, ..self.plan };
         engine.record_history(self.record_history);
         engine.load(&self.system, &plan)?;
+        attach_meter(&mut *engine, &plan, self.device)?;
         let tail =
             if self.tail_correction { self.system.tail_correction().unwrap_or_default() } else { Default::default() };
         Ok(Simulation {
             engine,
             system: self.system,
             dynamics: self.dynamics,
+            device: self.device,
             plan,
             choice,
             tuner,
@@ -129,6 +132,7 @@ pub struct Simulation {
     system: System,
     in_step: bool,
     dynamics: Dynamics,
+    device: Device,
     plan: Plan,
     choice: Choice,
     /// Where the choice of the method is ours.
@@ -229,7 +233,8 @@ impl Simulation {
 
     /// Puts the present state on the engine.
     fn load(&mut self) -> Result<()> {
-        Ok(self.engine.load(&self.system, &self.plan)?)
+        self.engine.load(&self.system, &self.plan)?;
+        attach_meter(&mut *self.engine, &self.plan, self.device)
     }
 
     fn thermo_of(&self, totals: &Totals) -> Thermo {
@@ -339,6 +344,14 @@ impl Simulation {
     /// Name of the device.
     pub fn device(&self) -> String {
         self.engine.device()
+    }
+
+    /// Reads the electrical energy of the device from now on.
+    ///
+    /// # Errors
+    /// Why it has no meter that may be read.
+    pub(crate) fn energy_meter(&self) -> Result<EnergyMeter, String> {
+        EnergyMeter::of(self.device)
     }
 
     /// What was done so far.
