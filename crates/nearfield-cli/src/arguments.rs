@@ -106,6 +106,9 @@ pub struct Run {
     /// Print the configuration with every key and its default, and stop.
     #[arg(long)]
     pub print_config: bool,
+    /// Say at the start and at the end which methods could be used, what steps by them are predicted to take and took.
+    #[arg(long)]
+    pub explain: bool,
 }
 
 /// How to compute, where there is no configuration file or it is to be overruled.

@@ -25,6 +25,14 @@ pub enum Error {
     /// A picture.
     #[error(transparent)]
     Render(#[from] render::Error),
+    /// A file of constants of the cost model.
+    #[error("{}: {reason}; `nearfield bench auto` writes it anew, and without it Nearfield's own serve", path.display())]
+    Profile {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        reason: String,
+    },
     /// The device cannot be used here.
     #[error("device {device} is not available: {reason}")]
     DeviceUnavailable {

@@ -19,8 +19,7 @@ impl Index {
     pub fn new(plan: &Plan) -> Self {
         let probe = match plan.method {
             Method::Brute => return Self::Brute(Brute::default()),
-            Method::Cell => return Self::Grid(Grid::default()),
-            Method::Cluster => unreachable!("refused by supports"),
+            Method::Cell | Method::Cluster => return Self::Grid(Grid::default()),
             Method::RtList | Method::RtForces | Method::RtPerse | Method::RtBoxes => Probe::Point,
             Method::RtSpheres => Probe::Axes,
             Method::RtSquares => Probe::Edges,
@@ -41,6 +40,13 @@ impl Index {
             Self::Brute(brute) => brute,
             Self::Grid(grid) => grid,
             Self::Bvh(bvh) => &**bvh,
+        }
+    }
+
+    pub fn grid(&self) -> Option<&Grid> {
+        match self {
+            Self::Grid(grid) => Some(grid),
+            Self::Brute(_) | Self::Bvh(_) => None,
         }
     }
 

@@ -1,5 +1,6 @@
 //! The engine: a system in memory order, its structure, and the loop of a step.
 
+mod clusters;
 mod evaluate;
 mod integrate;
 mod maintain;
@@ -61,9 +62,6 @@ impl Engine for CpuEngine {
     }
 
     fn supports(&self, system: &System, plan: &Plan) -> Result<()> {
-        if plan.method == nearfield_core::Method::Cluster {
-            return Err(Error::Unsupported { method: plan.method, reason: "the CPU has no clusters yet; use cell" });
-        }
         if !system.radii.is_uniform() && !plan.method.supports_variable_radii() {
             return Err(Error::Unsupported {
                 method: plan.method,
@@ -88,10 +86,15 @@ impl Engine for CpuEngine {
     }
 
     fn advance(&mut self, dynamics: &Dynamics, from: u64, steps: u64, quantities: Quantities) -> Result<Totals> {
-        self.loaded()?.advance(dynamics, from, steps, quantities)
+        let loaded = self.loaded()?;
+        // Inside the pool, a thread of which then takes part in each pass instead of waiting outside.
+        rayon::scope(|_| loaded.advance(dynamics, from, steps, quantities))
     }
 
     fn memory_order(&self) -> Result<MemoryOrder> {
+        if let Some(loaded) = &self.loaded {
+            loaded.clusters.end();
+        }
         let order = |loaded: &Loaded| MemoryOrder { ids: loaded.state.id.clone(), sorted_at: loaded.sorted_at };
         Ok(self.loaded.as_deref().map(order).unwrap_or_default())
     }
@@ -100,6 +103,7 @@ impl Engine for CpuEngine {
         if let Some(loaded) = self.loaded.as_deref_mut().filter(|_| !order.ids.is_empty()) {
             loaded.state.reorder(&order.ids);
             loaded.sorted_at = order.sorted_at;
+            loaded.clusters.clusters.invalidate();
         }
         Ok(())
     }

@@ -123,6 +123,8 @@ impl Record {
 
     pub(super) fn update(&mut self, simulation: &Simulation, status: Status) {
         self.status = status;
+        self.method = simulation.choice().clone();
+        self.plan = *simulation.plan();
         self.steps = simulation.step();
         self.read_meter();
         self.wall_seconds = self.start.elapsed().as_secs_f64();
