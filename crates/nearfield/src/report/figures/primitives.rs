@@ -73,7 +73,13 @@ fn figure(records: &[&Record], start: &str, device: &str, number: u32, (suffix, 
             (ms > 0.0).then_some((per_cell(r)?, ms))
         };
         let title = family.to_owned();
-        Panel { title, x: Axis::log("p"), y: Axis::log("ms"), series: series(&of_family, point), shade: Vec::new() }
+        Panel {
+            title,
+            x: Axis::log("p, particles a cell"),
+            y: Axis::log("ms"),
+            series: series(&of_family, point),
+            shade: Vec::new(),
+        }
     };
     Figure {
         id: format!("primitives-{start}{suffix}-{}", slug(device)),
