@@ -37,7 +37,7 @@ pub(super) fn section(records: &[&Record]) -> Section {
         "One force evaluation, everything built anew, by the mean number p of particles in a cell. Uniform: p beta³ \
          points in the unit box, cutoff 1/beta. Sphere: p alpha³ points on the unit sphere with about 9p neighbours. Paper \
          B's CUDA grid is cell here; its custom AABB without and with sorting are rt-boxes in random order and sorted. \
-         Medians of five repetitions or more. The paper gives its times as figures only.",
+         Medians of five repetitions or more, fewer where one takes long. The paper gives its times as figures only.",
         &sizes_note(records),
     ];
     Section {
