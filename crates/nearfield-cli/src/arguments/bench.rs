@@ -16,14 +16,18 @@ Suites:
   md           the Lennard-Jones melt
   generations  performance and energy across GPUs (paper A, figure 13)
   all          all of these
+  auto         constants of the cost model by which the method auto chooses, for this machine
 
 Examples:
   nearfield bench all --quick -o out && nearfield plot out
   nearfield bench methods --device cuda -o out --stop-after 300
 
 Results go to DIR/SUITE.jsonl, one JSON object a line. What is in the file already is not measured again, so an \
-interrupted suite goes on where it stopped; what failed, or was too slow for a smaller --patience, is tried again. All methods must find the same number of pairs in the same input: the exit \
-code is 1 if one does not.";
+interrupted suite goes on where it stopped; what failed, or was too slow for a smaller --patience, is tried again. All \
+methods must find the same number of pairs in the same input: the exit code is 1 if one does not.
+
+Auto writes the profile of this machine instead: DIR/profile.toml, or without -o the file that NEARFIELD_PROFILE names or \
+nearfield/profile.toml in your folder for configurations.";
 
 pub const PLOT_HELP: &str = "\
 Examples:
@@ -35,7 +39,7 @@ writes report.html, which needs no network, and each figure as SVG and PNG.";
 
 #[derive(Args)]
 pub struct BenchArguments {
-    /// What to measure: a suite, or all.
+    /// What to measure: a suite, all, or auto.
     pub suite: SuiteChoice,
     /// Small sizes: each suite takes about a minute on two processor cores.
     #[arg(long)]
@@ -45,7 +49,7 @@ pub struct BenchArguments {
     pub device: Device,
     /// Directory of the results.
     #[arg(short, long, value_name = "DIR")]
-    pub output: PathBuf,
+    pub output: Option<PathBuf>,
     /// Measure again what the files hold already.
     #[arg(long)]
     pub fresh: bool,
@@ -78,10 +82,11 @@ pub struct PlotArguments {
     pub output: Option<PathBuf>,
 }
 
-/// A suite or all of them.
+/// A suite, all of them, or the constants of the cost model.
 #[derive(Clone, Copy)]
 pub enum SuiteChoice {
     All,
+    Auto,
     One(Suite),
 }
 
@@ -89,6 +94,10 @@ impl FromStr for SuiteChoice {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        if text == "all" { Ok(Self::All) } else { text.parse().map(Self::One).map_err(|error| format!("{error}, all")) }
+        match text {
+            "all" => Ok(Self::All),
+            "auto" => Ok(Self::Auto),
+            _ => text.parse().map(Self::One).map_err(|error| format!("{error}, all, auto")),
+        }
     }
 }

@@ -40,3 +40,24 @@ fn unknown_suites_and_empty_folders_are_refused() {
     assert_eq!(outcome.code, Some(2));
     assert!(outcome.stderr.contains("no results"), "{}", outcome.stderr);
 }
+
+#[test]
+fn the_cost_model_is_fitted_to_this_machine_and_serves_the_next_run() {
+    let folder = Folder::new();
+    let outcome = folder.succeed("bench auto --quick --device cpu");
+    for method in ["brute", "cell", "cluster", "rt-list", "rt-boxes"] {
+        assert!(outcome.stdout.contains(method), "{}", outcome.stdout);
+    }
+    // What `NEARFIELD_PROFILE` names.
+    let profile = folder.read("profile.toml");
+    assert!(profile.contains("[device.method.cell]") && profile.contains("per_thread = true"), "{profile}");
+    folder.write("start.toml", "[system.generate]\nn = 500\ndensity = 0.8442\n");
+    folder.succeed("run start.toml --device cpu --steps 2");
+    folder.succeed("bench auto --quick --device cpu -o elsewhere");
+    assert!(folder.path("elsewhere/profile.toml").is_file());
+}
+
+#[test]
+fn suites_need_a_folder_for_their_results() {
+    Folder::new().refuse("bench md --quick --device cpu", &["--output"]);
+}

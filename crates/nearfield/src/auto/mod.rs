@@ -5,6 +5,7 @@
 //! present state and without changing it, and the fastest goes on; when steps have become slower or quicker since, they
 //! are tried again. What is computed is the same by all of them, to rounding.
 
+mod calibrate;
 mod choice;
 mod cost;
 mod profile;
@@ -13,6 +14,7 @@ mod trial;
 mod tuner;
 mod watch;
 
+pub use calibrate::{Calibration, Sample, calibrate};
 pub use choice::{Candidate, Choice, Switch};
 pub use cost::Cost;
 pub use profile::{DeviceProfile, Profile};
