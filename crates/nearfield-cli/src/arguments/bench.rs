@@ -23,9 +23,11 @@ Examples:
   nearfield bench methods --device cuda -o out --stop-after 300
 
 Results go to DIR/SUITE.jsonl, one JSON object a line. What is in the file already is not measured again, so an \
-interrupted suite goes on where it stopped. Auto writes the profile of this machine instead: DIR/profile.toml, or without \
--o the file that NEARFIELD_PROFILE names or nearfield/profile.toml in your folder for configurations. All methods must find the same number of pairs in the same input: the exit \
-code is 1 if one does not.";
+interrupted suite goes on where it stopped; what failed, or was too slow for a smaller --patience, is tried again. All \
+methods must find the same number of pairs in the same input: the exit code is 1 if one does not.
+
+Auto writes the profile of this machine instead: DIR/profile.toml, or without -o the file that NEARFIELD_PROFILE names or \
+nearfield/profile.toml in your folder for configurations.";
 
 pub const PLOT_HELP: &str = "\
 Examples:

@@ -11,6 +11,7 @@ use nearfield::{
     auto::{Profile, calibrate as measure},
     bench::{self, Options, Suite, Summary},
 };
+use std::time::Instant;
 
 pub fn run(arguments: &BenchArguments) -> Result<(), Failure> {
     let suites = match arguments.suite {
@@ -35,12 +36,13 @@ pub fn run(arguments: &BenchArguments) -> Result<(), Failure> {
     let mut total = Summary::default();
     for suite in suites {
         let bar = SuiteBar::new(suite.name());
+        let begin = Instant::now();
         let outcome = bench::run(suite, directory, &options, &mut |progress| {
             bar.update(progress.done, progress.total, &progress.what);
         });
         bar.clear();
         let summary = outcome?;
-        print_line(&format!("{:<12} {}", suite.name(), describe(&summary)));
+        print_line(&format!("{:<12} {}, {:.0} s", suite.name(), describe(&summary), begin.elapsed().as_secs_f64()));
         total += summary;
     }
     let output = directory.display();

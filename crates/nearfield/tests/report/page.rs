@@ -118,7 +118,7 @@ pub fn full_results_take_the_place_of_quick_ones() {
     });
     let written = report::plot(folder.path(), folder.path()).unwrap();
     let page = fs::read_to_string(&written[0]).unwrap();
-    assert!(page.contains("<td>50000</td>") && !page.contains("<td>256</td>"));
+    assert!(page.contains("<td>50000</td><td>cell</td>") && !page.contains("<td>256</td><td>cell</td>"));
     assert!(!page.contains("--quick"));
 }
 

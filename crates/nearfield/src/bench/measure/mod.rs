@@ -27,6 +27,8 @@ pub(super) struct Trial<'a> {
     pub system: &'a System,
     pub dynamics: Dynamics,
     pub device: Device,
+    /// Whether lists last several steps.
+    pub keeps_lists: bool,
     /// Seconds to spend.
     pub seconds: f64,
     pub step: u64,
@@ -45,7 +47,8 @@ pub(super) fn measure(
     engine.load(system, plan)?;
     attach_meter(engine, plan, options.device)?;
     let (dynamics, device, seconds) = (case.start.dynamics, options.device, options.seconds());
-    let mut trial = Trial { engine, system, dynamics, device, seconds, step: 0 };
+    let keeps_lists = plan.method.uses_list() && plan.skin > 0.0;
+    let mut trial = Trial { engine, system, dynamics, device, keeps_lists, seconds, step: 0 };
     let (mut measurement, is_slow) = trial.first_look()?;
     let predicted_seconds = match case.measure {
         Measure::Series { steps } => measurement.evaluation_seconds * steps as f64,

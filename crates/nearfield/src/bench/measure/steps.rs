@@ -1,6 +1,6 @@
 //! Whole steps.
 
-use super::{MIN_REPETITIONS, Trial};
+use super::{MIN_REPETITIONS, SINGLE, Trial};
 use crate::{
     Result,
     bench::{Measurement, Spread},
@@ -10,15 +10,18 @@ use std::time::Instant;
 
 /// Most steps of a repetition.
 const MAX_STEPS: u64 = 500;
+/// Steps of a repetition where lists last many: some are to be built in each.
+const LIST_STEPS: u64 = 50;
 
 impl Trial<'_> {
-    /// Repetitions of so many steps that each takes a third of the time or less.
+    /// Repetitions of so many steps that each takes a part of the time or less.
     pub(super) fn steps(&mut self, measurement: &mut Measurement) -> Result<()> {
         // The first step after the start evaluates twice, and lists are new.
         self.advance(1, Quantities::FORCES)?;
         let (second, _) = self.advance(1, Quantities::FORCES)?;
         let fit = self.seconds / MIN_REPETITIONS as f64 / second.max(1e-9);
-        let steps = (fit as u64).clamp(1, MAX_STEPS);
+        let least = if self.keeps_lists { ((SINGLE * fit) as u64).clamp(1, LIST_STEPS) } else { 1 };
+        let steps = (fit as u64).clamp(least, MAX_STEPS);
         let mut times = Vec::new();
         let begin = Instant::now();
         while self.repeat(&times, begin) {

@@ -7,7 +7,7 @@ use crate::bench::{Case, Options};
 
 pub(in crate::bench) fn cases(options: &Options) -> Vec<Case> {
     let full = [10_000, 30_000, 100_000, 300_000, 1_000_000];
-    let sizes = options.sizes(&[500, 1500, 4500], &full);
+    let sizes = options.sizes(&[1000, 4000], &full);
     let of = |n| paper_a_grid().map(move |(positions, radii, boundary)| paper_a(n, positions, radii, boundary));
     sizes.into_iter().flat_map(of).collect()
 }

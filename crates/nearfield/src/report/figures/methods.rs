@@ -6,12 +6,13 @@ use crate::{
     report::{
         chart::{Axis, Figure, Panel, Series, Style},
         palette::{Look, Marker},
-        papers::papers,
+        papers::{CPU_CELL, name_in_paper_a, papers},
         results::{distinct, measured, methods, sizes, slug, why_not},
         section::Section,
         table::{Cell, Table, mark_least, number},
     },
 };
+use nearfield_core::Method;
 
 pub(super) fn section(records: &[&Record]) -> Section {
     let (mut figures, mut tables) = (Vec::new(), Vec::new());
@@ -89,9 +90,9 @@ fn figure(records: &[&Record], device: &str, n: usize) -> Figure {
 fn table(records: &[&Record], device: &str, n: usize) -> Table {
     let methods = methods(records);
     let mut header = vec!["case".to_owned(), "neighbours".to_owned()];
-    header.extend(methods.iter().map(|method| format!("{method}, ms")));
+    header.extend(methods.iter().map(|method| method.to_string()));
     let size = paper_size(n);
-    header.push(format!("paper A's best at n = {size}, ms"));
+    header.push(format!("paper A's best at n = {size}"));
     if size == n {
         header.push("paper A / ours".into());
     }
@@ -99,7 +100,9 @@ fn table(records: &[&Record], device: &str, n: usize) -> Table {
         let of_case = || records.iter().filter(move |record| record.case == case);
         let mut cells: Vec<_> = methods
             .iter()
-            .map(|&method| of_case().find(|r| r.plan.method == method).map_or((None, Cell::text("")), |r| cell(r)))
+            .map(|&method| {
+                of_case().find(|r| r.plan.method == method).map_or((None, Cell::text("")), |r| cell(r, size == n))
+            })
             .collect();
         mark_least(&mut cells);
         let ours = cells.iter().filter_map(|(ms, _)| *ms).fold(f64::INFINITY, f64::min);
@@ -113,11 +116,24 @@ fn table(records: &[&Record], device: &str, n: usize) -> Table {
         }
         row
     });
-    Table { caption: format!("Milliseconds a step on {device}, n = {n}"), header, rows: rows.collect() }
+    let brackets = if size == n { "; in brackets paper A's own" } else { "" };
+    Table { caption: format!("Milliseconds a step on {device}, n = {n}{brackets}"), header, rows: rows.collect() }
 }
 
-/// Milliseconds of a step; `*` where one evaluation of the start had to do.
-fn cell(record: &Record) -> (Option<f64>, Cell) {
+/// Milliseconds of a step; `*` where one evaluation of the start had to do. In brackets the paper's, where it is asked for.
+fn cell(record: &Record, with_papers: bool) -> (Option<f64>, Cell) {
+    let name = if record.device == "cpu" && record.plan.method == Method::Cell {
+        Some(CPU_CELL)
+    } else {
+        name_in_paper_a(record.plan.method).filter(|_| record.device != "cpu")
+    };
+    let of_paper = name.filter(|_| with_papers).and_then(|name| papers().table2.ms(&record.case, record.n, name));
+    let brackets = of_paper.map_or(String::new(), |ms| format!(" ({})", number(ms)));
+    let (ms, cell) = own_cell(record);
+    (ms, Cell { text: format!("{}{brackets}", cell.text), ..cell })
+}
+
+fn own_cell(record: &Record) -> (Option<f64>, Cell) {
     match measured(record) {
         Some(measurement) => {
             let ms = measurement.time.median * 1e3;

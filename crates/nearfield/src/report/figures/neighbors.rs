@@ -60,7 +60,7 @@ fn table(records: &[&Record], device: &str, name: &str) -> Table {
     let of_device: Vec<&Record> = records.iter().copied().filter(|r| r.device_name == device).collect();
     let methods = methods(&of_device);
     let mut header = vec!["k".to_owned(), "n".to_owned()];
-    header.extend(methods.iter().map(|method| format!("{method}, ms")));
+    header.extend(methods.iter().map(|method| method.to_string()));
     let inputs = distinct(&of_device, |record| (record.case.as_str(), record.n));
     let rows = inputs.into_iter().map(|(case, n)| {
         let mut cells: Vec<_> = methods

@@ -37,7 +37,7 @@ pub(super) fn section(records: &[&Record]) -> Section {
         "One force evaluation, everything built anew, by the mean number p of particles in a cell. Uniform: p beta³ \
          points in the unit box, cutoff 1/beta. Sphere: p alpha³ points on the unit sphere with about 9p neighbours. Paper \
          B's CUDA grid is cell here; its custom AABB without and with sorting are rt-boxes in random order and sorted. \
-         Medians of five repetitions or more. The paper gives its times as figures only.",
+         Medians of five repetitions or more, fewer where one takes long. The paper gives its times as figures only.",
         &sizes_note(records),
     ];
     Section {
@@ -73,7 +73,13 @@ fn figure(records: &[&Record], start: &str, device: &str, number: u32, (suffix, 
             (ms > 0.0).then_some((per_cell(r)?, ms))
         };
         let title = family.to_owned();
-        Panel { title, x: Axis::log("p"), y: Axis::log("ms"), series: series(&of_family, point), shade: Vec::new() }
+        Panel {
+            title,
+            x: Axis::log("p, particles a cell"),
+            y: Axis::log("ms"),
+            series: series(&of_family, point),
+            shade: Vec::new(),
+        }
     };
     Figure {
         id: format!("primitives-{start}{suffix}-{}", slug(device)),
