@@ -32,6 +32,10 @@ pub(super) fn section(records: &[&Record]) -> Section {
     }
 }
 
+/// Least seconds over which power is averaged: counters of GPUs are refreshed each 20 to 100 ms, so that shorter readings
+/// show the refreshing.
+const AVERAGED: f64 = 0.25;
+
 fn energy(record: &Record) -> Option<&Energy> {
     measured(record)?.energy.as_ref()
 }
@@ -108,7 +112,7 @@ fn power(records: &[&Record]) -> Figure {
     let panel = |case: &str| {
         let of_case: Vec<&Record> = records.iter().copied().filter(|record| record.case == case).collect();
         let curve =
-            |_: &Record, m: &Measurement| m.energy.as_ref().map_or_else(Vec::new, |energy| energy.power.clone());
+            |_: &Record, m: &Measurement| m.energy.as_ref().map_or_else(Vec::new, |energy| averaged(&energy.power));
         let mut series = curves_by_method(&of_case, &names, |_| true, curve);
         for one in &mut series {
             one.marked = Some(Vec::new());
@@ -121,6 +125,20 @@ fn power(records: &[&Record]) -> Figure {
         columns: 3,
         panels: distinct(records, |record| record.case.as_str()).into_iter().map(panel).collect(),
     }
+}
+
+/// Power over longer intervals; each point is at the end of its interval, as it is in the record.
+fn averaged(power: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let (mut points, mut begin, mut last, mut joules) = (Vec::new(), 0.0, 0.0, 0.0);
+    for &(seconds, watts) in power {
+        joules += watts * (seconds - last);
+        last = seconds;
+        if seconds - begin >= AVERAGED {
+            points.push((seconds, joules / (seconds - begin)));
+            (begin, joules) = (seconds, 0.0);
+        }
+    }
+    points
 }
 
 fn table(records: &[&Record]) -> Table {
@@ -144,5 +162,18 @@ fn table(records: &[&Record]) -> Table {
         caption: "Energy".into(),
         header: header.map(str::to_owned).to_vec(),
         rows: records.iter().map(row).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn averaging_keeps_the_energy_of_short_readings() {
+        let power = [(0.01, 2000.0), (0.05, 0.0), (0.3, 400.0), (0.6, 300.0), (0.7, 900.0)];
+        let points = averaged(&power);
+        assert_eq!(points.len(), 2, "what is left at the end is too short");
+        assert!((points[0].1 - (20.0 + 100.0) / 0.3).abs() < 1e-9 && (points[1].1 - 300.0).abs() < 1e-9);
     }
 }
