@@ -1,11 +1,11 @@
 //! Paper A, figures 11 and 12.
 
-use super::{DeviceNames, by_method, curves_by_method, sizes_note};
+use super::{DeviceNames, by_method, curves_by_method, inputs, sizes_note};
 use crate::{
     bench::{Energy, Measurement, Record, Suite},
     report::{
         chart::{Axis, Figure, Panel, Style},
-        results::{distinct, measured, why_not},
+        results::{measured, why_not},
         section::Section,
         table::{Cell, Table, number},
     },
@@ -60,15 +60,14 @@ fn meters(records: &[&Record]) -> String {
 
 fn panels(records: &[&Record], y: Axis, point: impl Fn(&Measurement) -> Option<f64>) -> Vec<Panel> {
     let names = DeviceNames::of(records);
-    let panel = |case: &str| {
-        let of_case: Vec<&Record> = records.iter().copied().filter(|record| record.case == case).collect();
+    let panel = |(case, n): (&str, usize)| {
+        let of_case: Vec<&Record> = records.iter().copied().filter(|r| r.case == case && r.n == n).collect();
         let mut series = by_method(&of_case, &names, |_| true, |_, m| Some((0.0, point(m)?)));
         let step = 1.0 / series.len().max(1) as f64;
         for (k, one) in series.iter_mut().enumerate() {
             one.style = Style::Bar;
             one.points[0].0 = (k as f64 + 0.5) * 0.8 * step - 0.4;
         }
-        let n = of_case.first().map_or(0, |record| record.n);
         Panel {
             title: format!("{case}, n = {n}"),
             x: Axis::names(vec![String::new()]),
@@ -77,7 +76,7 @@ fn panels(records: &[&Record], y: Axis, point: impl Fn(&Measurement) -> Option<f
             shade: Vec::new(),
         }
     };
-    distinct(records, |record| record.case.as_str()).into_iter().map(panel).filter(is_shown).collect()
+    inputs(records).into_iter().map(panel).filter(is_shown).collect()
 }
 
 fn is_shown(panel: &Panel) -> bool {
@@ -109,21 +108,22 @@ fn rate(records: &[&Record]) -> Figure {
 
 fn power(records: &[&Record]) -> Figure {
     let names = DeviceNames::of(records);
-    let panel = |case: &str| {
-        let of_case: Vec<&Record> = records.iter().copied().filter(|record| record.case == case).collect();
+    let panel = |(case, n): (&str, usize)| {
+        let of_case: Vec<&Record> = records.iter().copied().filter(|r| r.case == case && r.n == n).collect();
         let curve =
             |_: &Record, m: &Measurement| m.energy.as_ref().map_or_else(Vec::new, |energy| averaged(&energy.power));
         let mut series = curves_by_method(&of_case, &names, |_| true, curve);
         for one in &mut series {
             one.marked = Some(Vec::new());
         }
-        Panel { title: case.into(), x: Axis::linear("s"), y: Axis::linear("W"), series, shade: Vec::new() }
+        let title = format!("{case}, n = {n}");
+        Panel { title, x: Axis::linear("s"), y: Axis::linear("W"), series, shade: Vec::new() }
     };
     Figure {
         id: "energy-power".into(),
         caption: "Power by time (paper A, figure 11)".into(),
         columns: 3,
-        panels: distinct(records, |record| record.case.as_str()).into_iter().map(panel).collect(),
+        panels: inputs(records).into_iter().map(panel).filter(is_shown).collect(),
     }
 }
 

@@ -80,7 +80,10 @@ fn figure(records: &[&Record], device: &str, n: usize) -> Figure {
     Figure {
         id: format!("policies-{}-{n}", slug(device)),
         caption: format!("Time of structure and query by step on {device}, n = {n} (paper A, figure 8)"),
-        columns: distinct(&shown, |record| record.case.split(' ').nth(1)).len(),
+        columns: match distinct(&shown, |record| record.case.split(' ').nth(1)).len() {
+            1 => cases.len(),
+            several => several,
+        },
         panels: cases.into_iter().map(panel).collect(),
     }
 }
