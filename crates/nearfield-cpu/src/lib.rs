@@ -7,6 +7,7 @@
 mod brute;
 mod bvh;
 mod candidates;
+mod cluster;
 mod engine;
 mod exact_sum;
 mod grid;

@@ -32,4 +32,15 @@ impl<'a, T: Copy> Scattered<'a, T> {
         // SAFETY: exclusive access to element i is the caller's promise; the index is bounds-checked.
         unsafe { *self.0[i].get() = value };
     }
+
+    /// Elements `range`.
+    ///
+    /// # Safety
+    /// No other thread reads or writes these elements, nor does this one by another reference, while the result lives.
+    #[expect(clippy::mut_from_ref, reason = "the purpose of this type; see above")]
+    pub unsafe fn range(&self, range: Range<usize>) -> &mut [T] {
+        let cells = &self.0[range];
+        // SAFETY: UnsafeCell<T> has the layout of T, and exclusive access is the caller's promise.
+        unsafe { std::slice::from_raw_parts_mut(UnsafeCell::raw_get(cells.as_ptr()), cells.len()) }
+    }
 }

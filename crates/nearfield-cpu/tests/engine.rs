@@ -27,7 +27,7 @@ fn every_method_gives_the_forces_and_energies_of_the_oracle() {
     for boundary in [Boundary::Periodic, Boundary::Wall] {
         let system = jittered(9, 1.1, boundary);
         let oracle = oracle::evaluate(&system);
-        for &method in Method::ALL.iter().filter(|&&method| method != Method::Cluster) {
+        for &method in Method::ALL {
             for &images in Images::ALL {
                 let mut engine = CpuEngine::new();
                 engine.load(&system, &Plan { images, ..Plan::new(method) }).unwrap();
@@ -55,7 +55,7 @@ fn every_method_gives_the_forces_and_energies_of_the_oracle() {
 fn all_exact_methods_run_the_same_trajectory_bit_for_bit() {
     let system = jittered(8, 1.1, Boundary::Periodic);
     let mut states = Vec::new();
-    for &method in Method::ALL.iter().filter(|&&method| method != Method::Cluster) {
+    for &method in Method::ALL {
         let mut engine = CpuEngine::new();
         engine.load(&system, &Plan { deterministic: true, ..Plan::new(method) }).unwrap();
         let totals = engine.advance(&Dynamics::nve(0.004), 0, 50, Quantities::ALL).unwrap();
@@ -67,4 +67,29 @@ fn all_exact_methods_run_the_same_trajectory_bit_for_bit() {
         assert_eq!(particles, &states[0].2, "{method}");
         assert_eq!(totals, &states[0].1, "{method}");
     }
+}
+
+/// A list remembers where particles were when it was built, and f32 sums its order: both end where another engine may
+/// take over.
+#[test]
+fn a_run_of_clusters_continues_bit_for_bit_from_its_memory_order() {
+    let system = jittered(8, 1.1, Boundary::Periodic);
+    let (plan, dynamics) = (Plan { skin: 0.4, ..Plan::new(Method::Cluster) }, Dynamics::nve(0.004));
+    let mut whole = CpuEngine::new();
+    whole.load(&system, &plan).unwrap();
+    whole.advance(&dynamics, 0, 17, Quantities::FORCES).unwrap();
+    let mut half = system.clone();
+    whole.snapshot(&mut half.particles).unwrap();
+    let order = whole.memory_order().unwrap();
+    assert_ne!(order.ids, (0..order.ids.len() as u32).collect::<Vec<_>>(), "particles lie in the order of clusters");
+    whole.advance(&dynamics, 17, 30, Quantities::FORCES).unwrap();
+    let mut continued = CpuEngine::new();
+    continued.load(&half, &plan).unwrap();
+    continued.set_memory_order(&order).unwrap();
+    continued.advance(&dynamics, 17, 30, Quantities::FORCES).unwrap();
+    let (mut expected, mut found) = (Particles::default(), Particles::default());
+    whole.snapshot(&mut expected).unwrap();
+    continued.snapshot(&mut found).unwrap();
+    assert!(found == expected);
+    assert!(whole.report().list_builds > 3, "{:?}", whole.report());
 }

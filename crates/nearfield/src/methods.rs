@@ -28,8 +28,7 @@ const DEVICES: [&str; 2] = ["cpu", "cuda"];
 /// Every method on every kind of device, whether this machine has one or not ([`crate::devices`] says so).
 pub fn methods() -> Vec<MethodSupport> {
     let everywhere = |device| Method::ALL.iter().map(move |&method| support(method, device));
-    let methods = DEVICES.iter().flat_map(|&device| everywhere(device));
-    methods.filter(|row| row.device != "cpu" || row.method != Method::Cluster).collect()
+    DEVICES.iter().flat_map(|&device| everywhere(device)).collect()
 }
 
 fn support(method: Method, device: &'static str) -> MethodSupport {

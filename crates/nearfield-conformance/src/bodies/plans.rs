@@ -10,9 +10,6 @@ pub fn different_radii_are_refused_exactly_by_the_methods_that_cannot_treat_them
     let mut different = uniform.clone();
     different.radii = Radii::PerParticle((0..uniform.particles.len()).map(|i| 1.0 + (i % 3) as f32 / 3.0).collect());
     for plan in plans::every() {
-        if plan.method == nearfield_core::Method::Cluster && engine.supports(&uniform, &plan).is_err() {
-            continue;
-        }
         assert_eq!(engine.supports(&uniform, &plan), Ok(()), "{plan:?}");
         let (answer, load) = (engine.supports(&different, &plan), engine.load(&different, &plan));
         assert_eq!(answer, load, "{plan:?}");

@@ -1,6 +1,7 @@
 //! One evaluation of the forces: upkeep of the structure, then the method's query.
 
 use super::{
+    clusters::StoredClusters,
     maintain::Upkeep,
     motion::Reference,
     reorder,
@@ -30,6 +31,9 @@ pub(super) struct Loaded {
     pub upkeep: Upkeep,
     pub scatter: ScatterSums,
     pub list: StoredList,
+    pub clusters: StoredClusters,
+    /// Time step of the run; zero outside of one.
+    pub dt: f32,
     /// Positions at the last structure build, for policies that ask.
     pub reference: Reference,
     pub report: Report,
@@ -51,6 +55,8 @@ impl Loaded {
             upkeep: Upkeep::new(plan),
             scatter: ScatterSums::default(),
             list: StoredList::new(plan, &physics, &system.radii),
+            clusters: StoredClusters::new(plan, &physics.sim_box, &system.radii),
+            dt: 0.0,
             reference: Reference::default(),
             report: Report::default(),
             record_history: false,
@@ -67,6 +73,12 @@ impl Loaded {
         self.results.prepare(self.state.len(), quantities.energy);
         let watch = NonFiniteWatch::default();
         let start = Instant::now();
+        if self.plan.method == Method::Cluster
+            && let Some(finite) = self.evaluate_clusters()
+        {
+            self.account(start.elapsed().as_secs_f64());
+            return self.accept(finite, step);
+        }
         let Self { plan, physics, state, results, upkeep, scatter: sums, list, report, .. } = self;
         let structure = upkeep.index.structure();
         let sink = results.sink();
@@ -76,12 +88,11 @@ impl Loaded {
             unsafe { sink.store(i as usize, sums) };
         };
         match plan.method {
-            Method::Brute | Method::Cell => {
+            Method::Brute | Method::Cell | Method::Cluster => {
                 gather(physics, structure, plan.deterministic, quantities.energy, &finish);
             }
             // The order of candidates depends on when the BVH was built, which policies decide by the clock:
             // exact sums keep results independent of it.
-            Method::Cluster => unreachable!("refused by supports"),
             Method::RtBoxes | Method::RtSpheres | Method::RtSquares | Method::RtPerse => {
                 gather(physics, structure, true, quantities.energy, &finish);
             }
@@ -109,8 +120,24 @@ impl Loaded {
         Ok(())
     }
 
+    /// Ends an evaluation that has stored its forces: they are valid if all are finite.
+    fn accept(&mut self, finite: bool, step: u64) -> Result<()> {
+        if !finite {
+            let watch = NonFiniteWatch::default();
+            (0..self.state.len()).for_each(|i| watch.see(self.results.force.get(i), self.state.id[i]));
+            if let Some(particle) = watch.first() {
+                return Err(self.diagnose(particle, step));
+            }
+        }
+        self.forces_valid = true;
+        Ok(())
+    }
+
     /// Brings structure and list up to date with the positions of `step`.
     pub fn prepare(&mut self, step: u64) {
+        if self.plan.method == Method::Cluster {
+            return self.prepare_clusters();
+        }
         if self.plan.method.uses_list() && self.list.is_fresh(&self.state, &self.physics) {
             return;
         }

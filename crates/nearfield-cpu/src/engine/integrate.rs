@@ -8,6 +8,10 @@ use nearfield_core::{
     Boundary, Dynamics, Ensemble, ParticleType, SimBox,
     philox::{Stream, normals},
 };
+use std::ops::Range;
+
+/// Particles that [`Integrator::start_many`] settles together.
+const SETTLED: usize = 64;
 
 /// What changes of a particle in a step.
 #[derive(Clone, Copy, Debug)]
@@ -60,6 +64,63 @@ impl Integrator {
             half_kick: types.iter().map(|t| 0.5 * dt / t.mass).collect(),
             speed_limit: if dynamics.max_displacement > 0.0 { dynamics.max_displacement / dt } else { f32::INFINITY },
             langevin,
+        }
+    }
+
+    /// Whether [`Integrator::start_many`] and [`Integrator::finish_many`] do what [`Integrator::start`] and
+    /// [`Integrator::finish`] do, bit for bit.
+    pub fn has_fast_path(&self) -> bool {
+        self.langevin.is_none() && self.speed_limit == f32::INFINITY
+    }
+
+    /// First half kick and drift of neighbouring particles. Without types (`kind`) there is only one. Calls `settle` for
+    /// groups of particles of which some may have left the box or are not finite.
+    #[inline(always)]
+    pub fn start_many(
+        &self,
+        position: [&mut [f32]; 3],
+        velocity: [&mut [f32]; 3],
+        force: [&[f32]; 3],
+        kind: &[u32],
+        mut settle: impl FnMut(Range<usize>, [&mut [f32]; 3], [&mut [f32]; 3]),
+    ) {
+        let ([x, y, z], [vx, vy, vz]) = (position, velocity);
+        self.kick_many([&mut *vx, &mut *vy, &mut *vz], force, kind);
+        let (lo, hi) = (self.sim_box.lo(), self.sim_box.hi());
+        let mut at = 0;
+        while at < x.len() {
+            let group = at..(at + SETTLED).min(x.len());
+            let mut outside = false;
+            for (axis, (x, v)) in [(&mut *x, &*vx), (&mut *y, &*vy), (&mut *z, &*vz)].into_iter().enumerate() {
+                let (lo, hi) = (lo[axis], hi[axis]);
+                let mut inside = true;
+                for (x, v) in x[group.clone()].iter_mut().zip(&v[group.clone()]) {
+                    *x += self.dt * *v;
+                    inside &= (*x >= lo) & (*x < hi);
+                }
+                outside |= !inside;
+            }
+            if outside {
+                settle(group.clone(), [&mut *x, &mut *y, &mut *z], [&mut *vx, &mut *vy, &mut *vz]);
+            }
+            at = group.end;
+        }
+    }
+
+    /// Half kick of neighbouring particles.
+    #[inline(always)]
+    pub fn kick_many(&self, velocity: [&mut [f32]; 3], force: [&[f32]; 3], kind: &[u32]) {
+        for (velocity, force) in velocity.into_iter().zip(force) {
+            if kind.is_empty() {
+                let half_kick = self.half_kick[0];
+                for (v, f) in velocity.iter_mut().zip(force) {
+                    *v += half_kick * f;
+                }
+            } else {
+                for ((v, f), &kind) in velocity.iter_mut().zip(force).zip(kind) {
+                    *v += self.half_kick[kind as usize] * f;
+                }
+            }
         }
     }
 
@@ -127,7 +188,15 @@ impl Integrator {
         }
     }
 
-    /// Wraps on periodic axes and reflects at walls.
+    /// Wraps on periodic axes and reflects at walls, where the particle has left the box.
+    #[cold]
+    pub fn settle(&self, p: &mut Moving) {
+        let (lo, hi) = (self.sim_box.lo(), self.sim_box.hi());
+        if !(0..3).all(|axis| p.position[axis] >= lo[axis] && p.position[axis] < hi[axis]) {
+            self.apply_boundaries(p);
+        }
+    }
+
     #[cold]
     #[expect(clippy::needless_range_loop, reason = "one axis of several vectors")]
     fn apply_boundaries(&self, p: &mut Moving) {

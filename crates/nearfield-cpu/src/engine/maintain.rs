@@ -4,7 +4,7 @@ use crate::{Brute, Bvh, Grid, Input, Probe, Refit, Structure};
 use nearfield_core::{
     Method, Plan, Report,
     engine::StepCost,
-    maintenance::{Action, Motion, Policy},
+    maintenance::{Action, EnergyCounter, Motion, Policy},
 };
 use std::time::Instant;
 
@@ -19,8 +19,7 @@ impl Index {
     pub fn new(plan: &Plan) -> Self {
         let probe = match plan.method {
             Method::Brute => return Self::Brute(Brute::default()),
-            Method::Cell => return Self::Grid(Grid::default()),
-            Method::Cluster => unreachable!("refused by supports"),
+            Method::Cell | Method::Cluster => return Self::Grid(Grid::default()),
             Method::RtList | Method::RtForces | Method::RtPerse | Method::RtBoxes => Probe::Point,
             Method::RtSpheres => Probe::Axes,
             Method::RtSquares => Probe::Edges,
@@ -41,6 +40,13 @@ impl Index {
             Self::Brute(brute) => brute,
             Self::Grid(grid) => grid,
             Self::Bvh(bvh) => &**bvh,
+        }
+    }
+
+    pub fn grid(&self) -> Option<&Grid> {
+        match self {
+            Self::Grid(grid) => Some(grid),
+            Self::Brute(_) | Self::Bvh(_) => None,
         }
     }
 
@@ -76,6 +82,11 @@ pub(super) struct Upkeep {
 impl Upkeep {
     pub fn new(plan: &Plan) -> Self {
         Self { index: Index::new(plan), policy: plan.maintenance.policy(), built: false, last: None }
+    }
+
+    /// Gives the policy something to read energy from.
+    pub fn attach(&mut self, counter: Box<dyn EnergyCounter>) {
+        self.policy.attach(counter);
     }
 
     /// Whether [`Upkeep::next`] wants the motion since the last build.

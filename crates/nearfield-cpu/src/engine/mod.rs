@@ -1,5 +1,6 @@
 //! The engine: a system in memory order, its structure, and the loop of a step.
 
+mod clusters;
 mod evaluate;
 mod integrate;
 mod maintain;
@@ -15,7 +16,7 @@ use crate::InputRadii;
 use evaluate::Loaded;
 use nearfield_core::{
     Dynamics, Engine, Error, ListRequest, NeighborList, Particles, PerParticle, Plan, Quantities, Radii, Report,
-    Result, System, Totals, engine::MemoryOrder,
+    Result, System, Totals, engine::MemoryOrder, maintenance::EnergyCounter,
 };
 
 /// The engine that runs on the threads of the CPU (the current rayon pool).
@@ -61,9 +62,6 @@ impl Engine for CpuEngine {
     }
 
     fn supports(&self, system: &System, plan: &Plan) -> Result<()> {
-        if plan.method == nearfield_core::Method::Cluster {
-            return Err(Error::Unsupported { method: plan.method, reason: "the CPU has no clusters yet; use cell" });
-        }
         if !system.radii.is_uniform() && !plan.method.supports_variable_radii() {
             return Err(Error::Unsupported {
                 method: plan.method,
@@ -88,10 +86,15 @@ impl Engine for CpuEngine {
     }
 
     fn advance(&mut self, dynamics: &Dynamics, from: u64, steps: u64, quantities: Quantities) -> Result<Totals> {
-        self.loaded()?.advance(dynamics, from, steps, quantities)
+        let loaded = self.loaded()?;
+        // Inside the pool, a thread of which then takes part in each pass instead of waiting outside.
+        rayon::scope(|_| loaded.advance(dynamics, from, steps, quantities))
     }
 
     fn memory_order(&self) -> Result<MemoryOrder> {
+        if let Some(loaded) = &self.loaded {
+            loaded.clusters.end();
+        }
         let order = |loaded: &Loaded| MemoryOrder { ids: loaded.state.id.clone(), sorted_at: loaded.sorted_at };
         Ok(self.loaded.as_deref().map(order).unwrap_or_default())
     }
@@ -100,6 +103,7 @@ impl Engine for CpuEngine {
         if let Some(loaded) = self.loaded.as_deref_mut().filter(|_| !order.ids.is_empty()) {
             loaded.state.reorder(&order.ids);
             loaded.sorted_at = order.sorted_at;
+            loaded.clusters.clusters.invalidate();
         }
         Ok(())
     }
@@ -145,6 +149,12 @@ impl Engine for CpuEngine {
         self.record_history = on;
         if let Some(loaded) = &mut self.loaded {
             loaded.record_history = on;
+        }
+    }
+
+    fn attach_meter(&mut self, counter: Box<dyn EnergyCounter>) {
+        if let Some(loaded) = &mut self.loaded {
+            loaded.upkeep.attach(counter);
         }
     }
 }

@@ -22,7 +22,11 @@ impl Loaded {
     /// See [`nearfield_core::Engine::advance`].
     pub fn advance(&mut self, dynamics: &Dynamics, from: u64, steps: u64, quantities: Quantities) -> Result<Totals> {
         dynamics.validate()?;
+        self.dt = dynamics.dt;
         self.physics.cap = if dynamics.max_displacement > 0.0 { OVERLAP_CAP } else { f32::INFINITY };
+        if self.plan.method == Method::Cluster && !self.plan.deterministic && self.clusters.forget_if_ended() {
+            self.forces_valid = false;
+        }
         if !self.forces_valid || steps == 0 {
             let wanted = if steps == 0 { quantities } else { Quantities::FORCES };
             self.evaluate(wanted, from)?;
@@ -90,10 +94,14 @@ impl Loaded {
         let start = Instant::now();
         let watch = NonFiniteWatch::default();
         let force = &self.results.force;
-        self.state.for_each_moving(|i, p, kind, id| {
-            integrator.start(p, force.get(i), kind, id, step);
-            watch.see(p.position, id);
-        });
+        if integrator.has_fast_path() {
+            self.state.start_many(integrator, force, &watch);
+        } else {
+            self.state.for_each_moving(|i, p, kind, id| {
+                integrator.start(p, force.get(i), kind, id, step);
+                watch.see(p.position, id);
+            });
+        }
         self.forces_valid = false;
         self.report.integrate_seconds += start.elapsed().as_secs_f64();
         self.check_positions(&watch, step)
@@ -102,7 +110,11 @@ impl Loaded {
     fn finish(&mut self, integrator: &Integrator) {
         let start = Instant::now();
         let force = &self.results.force;
-        self.state.for_each_moving(|i, p, kind, _| integrator.finish(p, force.get(i), kind));
+        if integrator.has_fast_path() {
+            self.state.finish_many(integrator, force);
+        } else {
+            self.state.for_each_moving(|i, p, kind, _| integrator.finish(p, force.get(i), kind));
+        }
         self.report.integrate_seconds += start.elapsed().as_secs_f64();
     }
 
@@ -118,6 +130,46 @@ impl State {
     #[inline(always)]
     fn moving(&self, i: usize) -> Moving {
         Moving { position: self.position.get(i), velocity: self.velocity.get(i), image: self.image[i] }
+    }
+
+    /// First half kick and drift of all particles, where the integrator has a fast path.
+    fn start_many(&mut self, integrator: &Integrator, force: &Vec3s, watch: &NonFiniteWatch) {
+        let Self { position, velocity, image, kind, id, .. } = self;
+        let [x, y, z] = position.axes_mut().map(|axis| axis.par_chunks_mut(CHUNK));
+        let [vx, vy, vz] = velocity.axes_mut().map(|axis| axis.par_chunks_mut(CHUNK));
+        let chunks = x.zip(y).zip(z).zip(vx.zip(vy).zip(vz)).zip(image.par_chunks_mut(CHUNK)).enumerate();
+        chunks.for_each(|(c, ((((x, y), z), ((vx, vy), vz)), image))| {
+            let range = c * CHUNK..c * CHUNK + x.len();
+            let force = force.axes().map(|axis| &axis[range.clone()]);
+            let kind = kind.get(range.clone()).unwrap_or(&[]);
+            let settle = |group: std::ops::Range<usize>, x: [&mut [f32]; 3], v: [&mut [f32]; 3]| {
+                for k in group {
+                    let mut p = Moving {
+                        position: [x[0][k], x[1][k], x[2][k]],
+                        velocity: [v[0][k], v[1][k], v[2][k]],
+                        image: image[k],
+                    };
+                    integrator.settle(&mut p);
+                    watch.see(p.position, id[range.start + k]);
+                    for axis in 0..3 {
+                        (x[axis][k], v[axis][k]) = (p.position[axis], p.velocity[axis]);
+                    }
+                    image[k] = p.image;
+                }
+            };
+            integrator.start_many([x, y, z], [vx, vy, vz], force, kind, settle);
+        });
+    }
+
+    /// Second half kick of all particles, where the integrator has a fast path.
+    fn finish_many(&mut self, integrator: &Integrator, force: &Vec3s) {
+        let kind = &self.kind;
+        let [vx, vy, vz] = self.velocity.axes_mut().map(|axis| axis.par_chunks_mut(CHUNK));
+        vx.zip(vy).zip(vz).enumerate().for_each(|(c, ((vx, vy), vz))| {
+            let range = c * CHUNK..c * CHUNK + vx.len();
+            let force = force.axes().map(|axis| &axis[range.clone()]);
+            integrator.kick_many([vx, vy, vz], force, kind.get(range).unwrap_or(&[]));
+        });
     }
 
     /// Changes every particle, in parallel: `change(index, particle, type, id)`.

@@ -1,6 +1,6 @@
 //! The particles on the device, in memory order.
 
-use crate::{Input, InputRadii, exact_sum::exact_sum, physics::Physics};
+use crate::{Input, InputRadii, cluster::Moving, exact_sum::exact_sum, physics::Physics};
 use nearfield_core::{ParticleType, Particles, Radii, System, Vec3s};
 use rayon::prelude::*;
 
@@ -66,6 +66,16 @@ impl State {
     pub fn input<'a>(&'a self, physics: &'a Physics, radii: InputRadii<'a>) -> Input<'a> {
         let [x, y, z] = self.position.axes();
         Input { sim_box: &physics.sim_box, position: [x, y, z], radii, kind: &self.kind }
+    }
+
+    /// What cluster pairs need to know of the particles, which move by steps of `dt`.
+    pub fn moving_slices(&self, dt: f32) -> Moving<'_> {
+        Moving {
+            position: self.position.axes().map(|axis| &axis[..]),
+            velocity: self.velocity.axes().map(|axis| &axis[..]),
+            kind: &self.kind,
+            dt,
+        }
     }
 
     /// The particles' own radii.

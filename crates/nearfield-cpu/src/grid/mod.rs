@@ -98,6 +98,16 @@ impl Grid {
         self.sort(input);
     }
 
+    /// Number of pencils.
+    pub(crate) fn n_pencils(&self) -> usize {
+        self.pencils.len().saturating_sub(1)
+    }
+
+    /// The slots of pencil `p`.
+    pub(crate) fn pencil_slots(&self, p: usize) -> Range<usize> {
+        self.pencils[p].slots as usize..self.pencils[p + 1].slots as usize
+    }
+
     /// Bytes held, buffers of the build included.
     pub fn bytes(&self) -> usize {
         self.slots.bytes()

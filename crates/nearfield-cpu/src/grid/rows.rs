@@ -35,7 +35,7 @@ impl Images {
 
 impl Grid {
     /// Appends the runs of `group`: see [`crate::Structure::runs`].
-    pub(super) fn find_rows(&self, group: &GroupBox, out: &mut Vec<Run>) {
+    pub(crate) fn find_rows(&self, group: &GroupBox, out: &mut Vec<Run>) {
         let extent = self.extent.max(largest(group.lo)).max(largest(group.hi));
         let farthest = self.layouts.iter().fold(group.radius, |r, layout| r.max(layout.largest));
         let farthest = conservative_range(farthest, extent);

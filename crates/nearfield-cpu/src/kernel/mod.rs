@@ -10,13 +10,14 @@ mod gather;
 mod group;
 mod rows;
 mod scatter;
-mod select;
+pub(crate) mod select;
 
 pub(crate) use accumulate::Grain;
 use block::evaluate;
 pub(crate) use gather::gather;
 pub(crate) use rows::{RowSource, gather_rows};
 pub(crate) use scatter::{ScatterSums, scatter};
+pub(crate) use select::with_law;
 
 /// What a query's pairs add up to.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -7,7 +7,7 @@ use nearfield_core::{
 use std::sync::Arc;
 
 /// A pair law and how it is best compiled.
-pub(super) trait Law: PairLaw {
+pub(crate) trait Law: PairLaw {
     /// Whether it is worth a kernel of its own for each way of summing: its arithmetic is so little that everything
     /// else shows.
     const FAST: bool = false;
@@ -45,7 +45,7 @@ macro_rules! with_law {
         }
     }};
 }
-pub(super) use with_law;
+pub(crate) use with_law;
 
 /// Runs `$body` with the coefficients that the system's types and radii ask for.
 macro_rules! with_coefficients {
@@ -70,4 +70,4 @@ macro_rules! with_coefficients {
         }
     }};
 }
-pub(super) use with_coefficients;
+pub(crate) use with_coefficients;

@@ -4,9 +4,11 @@
 //! operations are exact and equal on every one of them. Everything a kernel calls must be `#[inline(always)]`: code
 //! outside the kernel's own function is compiled without its instruction set.
 
-mod portable;
 #[cfg(target_arch = "x86_64")]
-mod x86;
+mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
+mod portable;
 
 pub(crate) use portable::Portable;
 use std::sync::OnceLock;
@@ -17,6 +19,8 @@ pub(crate) trait Lanes: Copy {
     type F: Copy;
     /// Sixteen u32 below 2³¹, or the padding `u32::MAX`.
     type U: Copy;
+    /// Sixteen truth values.
+    type M: Copy;
 
     fn splat(self, value: f32) -> Self::F;
     fn load(self, from: &[f32; 16]) -> Self::F;
@@ -39,6 +43,30 @@ pub(crate) trait Lanes: Copy {
     fn compress(self, mask: u16, value: Self::F, to: &mut [f32; 16]);
     /// As [`Lanes::compress`], for u32.
     fn compress_u(self, mask: u16, value: Self::U, to: &mut [u32; 16]);
+
+    /// a < b as truth values; false where one is NaN.
+    fn less(self, a: Self::F, b: Self::F) -> Self::M;
+    fn mask(self, bits: u16) -> Self::M;
+    fn and(self, a: Self::M, b: Self::M) -> Self::M;
+    /// Zero where the mask is false, whatever was there.
+    fn keep(self, mask: Self::M, value: Self::F) -> Self::F;
+    /// The smaller; b where one is NaN.
+    fn min(self, a: Self::F, b: Self::F) -> Self::F;
+    fn sqrt(self, a: Self::F) -> Self::F;
+    /// 1 / a where the mask is true, within two units in the last place (the one operation that differs between
+    /// instruction sets); zero elsewhere.
+    fn reciprocal(self, mask: Self::M, a: Self::F) -> Self::F;
+
+    /// The same eight values in lanes 0 to 7 and 8 to 15.
+    fn twice(self, half: &[f32; 8]) -> Self::F;
+    /// One value in lanes 0 to 7, another in lanes 8 to 15.
+    fn halves(self, low: f32, high: f32) -> Self::F;
+    /// Adds lanes 0 to 7 and lanes 8 to 15 to eight values.
+    fn add_halves(self, a: Self::F, to: &mut [f32; 8]);
+    /// Sums of lanes 0 to 7 and of lanes 8 to 15, of `a` and then of `b`.
+    fn sum_halves(self, a: Self::F, b: Self::F) -> [f32; 4];
+    /// `low[index]` in lanes 0 to 7, `high[index]` in lanes 8 to 15. Indices are below 8.
+    fn look_up(self, low: &[f32; 8], high: &[f32; 8], index: &[u32; 8]) -> Self::F;
 }
 
 /// Work to be done in one instruction set.
@@ -96,9 +124,9 @@ impl Isa {
     pub fn run<K: Kernel>(self, kernel: K) -> K::Output {
         match self {
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512(v4) => v4.vectorize(x86::OnAvx512 { lanes: v4, kernel }),
+            Self::Avx512(v4) => v4.vectorize(avx512::OnAvx512 { lanes: v4, kernel }),
             #[cfg(target_arch = "x86_64")]
-            Self::Avx2(v3) => v3.vectorize(x86::OnAvx2 { lanes: v3, kernel }),
+            Self::Avx2(v3) => v3.vectorize(avx2::OnAvx2 { lanes: v3, kernel }),
             Self::Portable => kernel.run(Portable),
         }
     }

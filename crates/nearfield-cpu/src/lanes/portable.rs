@@ -26,6 +26,7 @@ fn compress<T: Copy>(mask: u16, value: [T; 16], to: &mut [T; 16]) {
 impl Lanes for Portable {
     type F = [f32; 16];
     type U = [u32; 16];
+    type M = u16;
 
     #[inline(always)]
     fn splat(self, value: f32) -> [f32; 16] {
@@ -95,5 +96,70 @@ impl Lanes for Portable {
     #[inline(always)]
     fn compress_u(self, mask: u16, value: [u32; 16], to: &mut [u32; 16]) {
         compress(mask, value, to);
+    }
+
+    #[inline(always)]
+    fn less(self, a: [f32; 16], b: [f32; 16]) -> u16 {
+        self.lt(a, b)
+    }
+
+    #[inline(always)]
+    fn mask(self, bits: u16) -> u16 {
+        bits
+    }
+
+    #[inline(always)]
+    fn and(self, a: u16, b: u16) -> u16 {
+        a & b
+    }
+
+    #[inline(always)]
+    fn keep(self, mask: u16, value: [f32; 16]) -> [f32; 16] {
+        from_fn(|k| if mask >> k & 1 == 1 { value[k] } else { 0.0 })
+    }
+
+    #[inline(always)]
+    fn min(self, a: [f32; 16], b: [f32; 16]) -> [f32; 16] {
+        from_fn(|k| if a[k] < b[k] { a[k] } else { b[k] })
+    }
+
+    #[inline(always)]
+    fn sqrt(self, a: [f32; 16]) -> [f32; 16] {
+        a.map(f32::sqrt)
+    }
+
+    #[inline(always)]
+    fn reciprocal(self, mask: u16, a: [f32; 16]) -> [f32; 16] {
+        self.keep(mask, a.map(f32::recip))
+    }
+
+    #[inline(always)]
+    fn twice(self, half: &[f32; 8]) -> [f32; 16] {
+        from_fn(|k| half[k % 8])
+    }
+
+    #[inline(always)]
+    fn halves(self, low: f32, high: f32) -> [f32; 16] {
+        from_fn(|k| if k < 8 { low } else { high })
+    }
+
+    #[inline(always)]
+    fn add_halves(self, a: [f32; 16], to: &mut [f32; 8]) {
+        *to = from_fn(|k| to[k] + (a[k] + a[k + 8]));
+    }
+
+    #[inline(always)]
+    fn sum_halves(self, a: [f32; 16], b: [f32; 16]) -> [f32; 4] {
+        // In the order of the vector units, so that sums are the same.
+        let sum = |a: &[f32; 16], o: usize| {
+            let quarter = |o: usize| (a[o] + a[o + 2]) + (a[o + 1] + a[o + 3]);
+            quarter(o) + quarter(o + 4)
+        };
+        [sum(&a, 0), sum(&a, 8), sum(&b, 0), sum(&b, 8)]
+    }
+
+    #[inline(always)]
+    fn look_up(self, low: &[f32; 8], high: &[f32; 8], index: &[u32; 8]) -> [f32; 16] {
+        from_fn(|k| if k < 8 { low[index[k] as usize & 7] } else { high[index[k - 8] as usize & 7] })
     }
 }

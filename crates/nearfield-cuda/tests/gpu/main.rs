@@ -76,14 +76,19 @@ fn main() {
         plans::each_structure(),
         neighbors::pairs_are_those_of_the_cpu,
     );
+    let rays = plans::each_structure().into_iter().filter(|plan| plan.method.uses_bvh());
+    trials.add_for(
+        "neighbors::a_million_particles_have_the_pairs_that_cells_find",
+        rays.collect(),
+        neighbors::a_million_particles_have_the_pairs_that_cells_find,
+    );
     trials.add_for(
         "melt::energy_and_momentum_are_conserved",
         plans::each_method(),
         melt::energy_and_momentum_are_conserved,
     );
-    let on_both = || plans::each_method().into_iter().filter(|plan| plan.method != Method::Cluster).collect();
-    trials.add_for("checkpoints::a_run_goes_on_from_gpu_to_cpu", on_both(), checkpoints::from_gpu_to_cpu);
-    trials.add_for("checkpoints::a_run_goes_on_from_cpu_to_gpu", on_both(), checkpoints::from_cpu_to_gpu);
+    trials.add_for("checkpoints::a_run_goes_on_from_gpu_to_cpu", plans::each_method(), checkpoints::from_gpu_to_cpu);
+    trials.add_for("checkpoints::a_run_goes_on_from_cpu_to_gpu", plans::each_method(), checkpoints::from_cpu_to_gpu);
     let cell = vec![Plan::new(Method::Cell)];
     trials.add_for("memory::a_list_that_does_not_fit_is_an_error", cell, memory::a_list_that_does_not_fit_is_an_error);
     libtest_mimic::run(&arguments, trials.trials).exit();

@@ -1,24 +1,9 @@
-//! Lanes as one AVX-512 register or two AVX2 registers.
+//! Lanes as two AVX2 registers.
 
 use super::{Kernel, Lanes};
-use pulp::x86::{V3, V4};
+use pulp::x86::V3;
 use pulp::{NullaryFnOnce, cast};
-use std::arch::x86_64::{__m256, __m256i, __m512, __m512i, _CMP_LT_OQ};
-
-/// A kernel to run under AVX-512.
-pub(super) struct OnAvx512<K> {
-    pub lanes: V4,
-    pub kernel: K,
-}
-
-impl<K: Kernel> NullaryFnOnce for OnAvx512<K> {
-    type Output = K::Output;
-
-    #[inline(always)]
-    fn call(self) -> K::Output {
-        self.kernel.run(self.lanes)
-    }
-}
+use std::arch::x86_64::{__m256, __m256i, _CMP_LT_OQ};
 
 /// A kernel to run under AVX2 and FMA.
 pub(super) struct OnAvx2<K> {
@@ -32,82 +17,6 @@ impl<K: Kernel> NullaryFnOnce for OnAvx2<K> {
     #[inline(always)]
     fn call(self) -> K::Output {
         self.kernel.run(self.lanes)
-    }
-}
-
-impl Lanes for V4 {
-    type F = __m512;
-    type U = __m512i;
-
-    #[inline(always)]
-    fn splat(self, value: f32) -> __m512 {
-        self.avx512f._mm512_set1_ps(value)
-    }
-
-    #[inline(always)]
-    fn load(self, from: &[f32; 16]) -> __m512 {
-        cast(*from)
-    }
-
-    #[inline(always)]
-    fn add(self, a: __m512, b: __m512) -> __m512 {
-        self.avx512f._mm512_add_ps(a, b)
-    }
-
-    #[inline(always)]
-    fn sub(self, a: __m512, b: __m512) -> __m512 {
-        self.avx512f._mm512_sub_ps(a, b)
-    }
-
-    #[inline(always)]
-    fn mul(self, a: __m512, b: __m512) -> __m512 {
-        self.avx512f._mm512_mul_ps(a, b)
-    }
-
-    #[inline(always)]
-    fn mul_add(self, a: __m512, b: __m512, c: __m512) -> __m512 {
-        self.avx512f._mm512_fmadd_ps(a, b, c)
-    }
-
-    #[inline(always)]
-    fn max(self, a: __m512, b: __m512) -> __m512 {
-        self.avx512f._mm512_max_ps(a, b)
-    }
-
-    #[inline(always)]
-    fn lt(self, a: __m512, b: __m512) -> u16 {
-        self.avx512f._mm512_cmp_ps_mask::<_CMP_LT_OQ>(a, b)
-    }
-
-    #[inline(always)]
-    fn splat_u(self, value: u32) -> __m512i {
-        self.avx512f._mm512_set1_epi32(value.cast_signed())
-    }
-
-    #[inline(always)]
-    fn load_u(self, from: &[u32; 16]) -> __m512i {
-        cast(*from)
-    }
-
-    #[inline(always)]
-    fn ne_u(self, a: __m512i, b: __m512i) -> u16 {
-        self.avx512f._mm512_cmpneq_epi32_mask(a, b)
-    }
-
-    #[inline(always)]
-    fn gt_u(self, a: __m512i, b: __m512i) -> u16 {
-        self.avx512f._mm512_cmpgt_epi32_mask(a, b)
-    }
-
-    // In a register and then stored whole: the compressing store is microcoded on some processors.
-    #[inline(always)]
-    fn compress(self, mask: u16, value: __m512, to: &mut [f32; 16]) {
-        *to = cast(self.avx512f._mm512_maskz_compress_ps(mask, value));
-    }
-
-    #[inline(always)]
-    fn compress_u(self, mask: u16, value: __m512i, to: &mut [u32; 16]) {
-        *to = cast(self.avx512f._mm512_maskz_compress_epi32(mask, value));
     }
 }
 
@@ -146,6 +55,7 @@ fn compress_halves(v3: V3, mask: u16, value: [__m256i; 2]) -> ([u32; 8], usize, 
 impl Lanes for V3 {
     type F = [__m256; 2];
     type U = [__m256i; 2];
+    type M = [__m256; 2];
 
     #[inline(always)]
     fn splat(self, value: f32) -> [__m256; 2] {
@@ -225,5 +135,88 @@ impl Lanes for V3 {
         let (low, n_low, high) = compress_halves(self, mask, value);
         to[..8].copy_from_slice(&low);
         to[n_low..n_low + 8].copy_from_slice(&high);
+    }
+
+    #[inline(always)]
+    fn less(self, a: [__m256; 2], b: [__m256; 2]) -> [__m256; 2] {
+        [self.avx._mm256_cmp_ps::<_CMP_LT_OQ>(a[0], b[0]), self.avx._mm256_cmp_ps::<_CMP_LT_OQ>(a[1], b[1])]
+    }
+
+    #[inline(always)]
+    fn mask(self, bits: u16) -> [__m256; 2] {
+        let lanes: __m256i = cast([1u32, 2, 4, 8, 16, 32, 64, 128]);
+        let low = self.avx2._mm256_and_si256(self.avx._mm256_set1_epi32(i32::from(bits)), lanes);
+        let high = self.avx2._mm256_and_si256(self.avx._mm256_set1_epi32(i32::from(bits >> 8)), lanes);
+        [cast(self.avx2._mm256_cmpeq_epi32(low, lanes)), cast(self.avx2._mm256_cmpeq_epi32(high, lanes))]
+    }
+
+    #[inline(always)]
+    fn and(self, a: [__m256; 2], b: [__m256; 2]) -> [__m256; 2] {
+        [self.avx._mm256_and_ps(a[0], b[0]), self.avx._mm256_and_ps(a[1], b[1])]
+    }
+
+    #[inline(always)]
+    fn keep(self, mask: [__m256; 2], value: [__m256; 2]) -> [__m256; 2] {
+        self.and(mask, value)
+    }
+
+    #[inline(always)]
+    fn min(self, a: [__m256; 2], b: [__m256; 2]) -> [__m256; 2] {
+        [self.avx._mm256_min_ps(a[0], b[0]), self.avx._mm256_min_ps(a[1], b[1])]
+    }
+
+    #[inline(always)]
+    fn sqrt(self, a: [__m256; 2]) -> [__m256; 2] {
+        [self.avx._mm256_sqrt_ps(a[0]), self.avx._mm256_sqrt_ps(a[1])]
+    }
+
+    #[inline(always)]
+    fn reciprocal(self, mask: [__m256; 2], a: [__m256; 2]) -> [__m256; 2] {
+        let two = self.avx._mm256_set1_ps(2.0);
+        let estimate = [self.avx._mm256_rcp_ps(a[0]), self.avx._mm256_rcp_ps(a[1])];
+        let low = self.avx._mm256_mul_ps(estimate[0], self.fma._mm256_fnmadd_ps(a[0], estimate[0], two));
+        let high = self.avx._mm256_mul_ps(estimate[1], self.fma._mm256_fnmadd_ps(a[1], estimate[1], two));
+        // Masked last: infinity times its estimate, zero, is NaN.
+        self.and(mask, [low, high])
+    }
+
+    #[inline(always)]
+    fn twice(self, half: &[f32; 8]) -> [__m256; 2] {
+        [cast(*half); 2]
+    }
+
+    #[inline(always)]
+    fn halves(self, low: f32, high: f32) -> [__m256; 2] {
+        [self.avx._mm256_set1_ps(low), self.avx._mm256_set1_ps(high)]
+    }
+
+    #[inline(always)]
+    fn add_halves(self, a: [__m256; 2], to: &mut [f32; 8]) {
+        *to = cast(self.avx._mm256_add_ps(cast(*to), self.avx._mm256_add_ps(a[0], a[1])));
+    }
+
+    #[inline(always)]
+    fn sum_halves(self, a: [__m256; 2], b: [__m256; 2]) -> [f32; 4] {
+        let v = self.avx;
+        let low = v._mm256_add_ps(
+            v._mm256_shuffle_ps::<0b01_00_01_00>(a[0], b[0]),
+            v._mm256_shuffle_ps::<0b11_10_11_10>(a[0], b[0]),
+        );
+        let high = v._mm256_add_ps(
+            v._mm256_shuffle_ps::<0b01_00_01_00>(a[1], b[1]),
+            v._mm256_shuffle_ps::<0b11_10_11_10>(a[1], b[1]),
+        );
+        let low = v._mm256_add_ps(low, v._mm256_permute_ps::<0b10_11_00_01>(low));
+        let high = v._mm256_add_ps(high, v._mm256_permute_ps::<0b10_11_00_01>(high));
+        let halves =
+            v._mm256_add_ps(v._mm256_permute2f128_ps::<0x20>(low, high), v._mm256_permute2f128_ps::<0x31>(low, high));
+        let halves: [f32; 8] = cast(halves);
+        [halves[0], halves[4], halves[2], halves[6]]
+    }
+
+    #[inline(always)]
+    fn look_up(self, low: &[f32; 8], high: &[f32; 8], index: &[u32; 8]) -> [__m256; 2] {
+        let index = cast(*index);
+        [self.avx2._mm256_permutevar8x32_ps(cast(*low), index), self.avx2._mm256_permutevar8x32_ps(cast(*high), index)]
     }
 }

@@ -1,0 +1,348 @@
+//! Lennard-Jones by whole vectors: two laws, and the kernel over the inner list.
+
+use super::{
+    BLOCK,
+    blocks::{Blocks, Octet},
+    list::Pairs,
+    quad::{CLUSTER, Quad, VECTORS, own_pairs, squared_length, twice},
+};
+use crate::{
+    lanes::{self, Lanes},
+    physics::Physics,
+};
+use nearfield_core::{Truncation, interaction::PairCoefficients};
+
+/// A pair law in vectors, given the reciprocal of r².
+pub(super) trait Law: Copy + Sync {
+    /// Whether types matter.
+    const TYPED: bool;
+
+    /// What forces and energies are to be multiplied with at last.
+    fn scale(&self) -> f32;
+
+    /// What the functions below need to know of pairs of two particles' types with those of eight.
+    fn coefficients<L: Lanes>(&self, lanes: L, i: [u32; 2], j: &[u32; BLOCK]) -> [L::F; 4];
+
+    /// `-(1/r) dU/dr` from `y` = 1 / r², for several vectors at once: each operation on all of them before the next,
+    /// so that none waits for the one before.
+    fn f_over_r<L: Lanes, const K: usize>(&self, lanes: L, y: &[L::F; K], c: &[[L::F; 4]; K]) -> [L::F; K];
+
+    /// `U` from `y` = 1 / r² and r².
+    fn energy<L: Lanes>(&self, lanes: L, y: L::F, r2: L::F, c: &[L::F; 4]) -> L::F;
+}
+
+/// One type, force not shifted, no cap: in units of 48 ε σ¹², which leaves one constant.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Plain {
+    scale: f32,
+    /// 1 / (2 σ⁶)
+    half_inverse_sigma6: f32,
+    shift: f32,
+}
+
+impl Plain {
+    /// Where the system allows. Powers of distances far from one would leave the range of f32.
+    pub fn new(physics: &Physics) -> Option<Self> {
+        let [kind] = &physics.interaction.types[..] else { return None };
+        let sigma6 = f64::from(kind.sigma).powi(6);
+        let c = physics.interaction.single(physics.cutoff()).0;
+        let scale = (48.0 * f64::from(kind.epsilon) * sigma6 * sigma6) as f32;
+        let usable = (0.02..=20.0).contains(&kind.sigma)
+            && physics.cutoff() <= 100.0
+            && physics.cap == f32::INFINITY
+            && scale.is_normal()
+            && physics.interaction.truncation != Truncation::Force;
+        let half_inverse_sigma6 = (0.5 / sigma6) as f32;
+        usable.then_some(Self { scale, half_inverse_sigma6, shift: c.energy_shift / scale })
+    }
+}
+
+impl Law for Plain {
+    const TYPED: bool = false;
+
+    fn scale(&self) -> f32 {
+        self.scale
+    }
+
+    #[inline(always)]
+    fn coefficients<L: Lanes>(&self, lanes: L, _: [u32; 2], _: &[u32; BLOCK]) -> [L::F; 4] {
+        let zero = lanes.splat(0.0);
+        [lanes.splat(self.half_inverse_sigma6), lanes.splat(self.shift), zero, zero]
+    }
+
+    #[inline(always)]
+    fn f_over_r<L: Lanes, const K: usize>(&self, lanes: L, y: &[L::F; K], c: &[[L::F; 4]; K]) -> [L::F; K] {
+        let (mut y2, mut y3) = (*y, *y);
+        for k in 0..K {
+            y2[k] = lanes.mul(y[k], y[k]);
+        }
+        for k in 0..K {
+            y3[k] = lanes.sub(lanes.mul(y2[k], y[k]), c[k][0]);
+        }
+        for k in 0..K {
+            y2[k] = lanes.mul(y2[k], y2[k]);
+        }
+        for k in 0..K {
+            y3[k] = lanes.mul(y3[k], y2[k]);
+        }
+        y3
+    }
+
+    #[inline(always)]
+    fn energy<L: Lanes>(&self, lanes: L, y: L::F, _: L::F, c: &[L::F; 4]) -> L::F {
+        let y3 = lanes.mul(lanes.mul(y, y), y);
+        let u = lanes.mul(y3, lanes.sub(y3, lanes.add(c[0], c[0])));
+        lanes.sub(lanes.mul(u, lanes.splat(1.0 / 12.0)), c[1])
+    }
+}
+
+/// Up to eight types, any truncation, and a cap.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Typed<const FORCE_SHIFT: bool> {
+    /// Rows by type of i, entries by type of j: σ², 48 ε, energy shift, force shift.
+    rows: [[[f32; BLOCK]; 4]; BLOCK],
+    cutoff: f32,
+    cap: f32,
+}
+
+impl<const FORCE_SHIFT: bool> Typed<FORCE_SHIFT> {
+    /// Of an interaction with no more than eight types.
+    pub fn new(physics: &Physics) -> Self {
+        let n = physics.interaction.types.len();
+        let table = physics.interaction.typed_table(physics.cutoff());
+        let mut rows = [[[0.0; BLOCK]; 4]; BLOCK];
+        for (k, c) in table.iter().enumerate() {
+            let PairCoefficients { epsilon, sigma, energy_shift, force_shift, .. } = *c;
+            for (row, value) in rows[k / n].iter_mut().zip([sigma * sigma, 48.0 * epsilon, energy_shift, force_shift]) {
+                row[k % n] = value;
+            }
+        }
+        Self { rows, cutoff: physics.cutoff(), cap: physics.cap }
+    }
+}
+
+impl<const FORCE_SHIFT: bool> Law for Typed<FORCE_SHIFT> {
+    const TYPED: bool = true;
+
+    fn scale(&self) -> f32 {
+        1.0
+    }
+
+    #[inline(always)]
+    fn coefficients<L: Lanes>(&self, lanes: L, i: [u32; 2], j: &[u32; BLOCK]) -> [L::F; 4] {
+        let (low, high) = (&self.rows[i[0] as usize % BLOCK], &self.rows[i[1] as usize % BLOCK]);
+        [
+            lanes.look_up(&low[0], &high[0], j),
+            lanes.look_up(&low[1], &high[1], j),
+            lanes.look_up(&low[2], &high[2], j),
+            lanes.look_up(&low[3], &high[3], j),
+        ]
+    }
+
+    #[inline(always)]
+    fn f_over_r<L: Lanes, const K: usize>(&self, lanes: L, y: &[L::F; K], c: &[[L::F; 4]; K]) -> [L::F; K] {
+        let mut out = *y;
+        for k in 0..K {
+            let s2 = lanes.mul(c[k][0], y[k]);
+            let s6 = lanes.mul(lanes.mul(s2, s2), s2);
+            let f = lanes.mul(lanes.mul(c[k][1], y[k]), lanes.mul(s6, lanes.sub(s6, lanes.splat(0.5))));
+            let f = if FORCE_SHIFT { lanes.sub(f, lanes.mul(c[k][3], lanes.sqrt(y[k]))) } else { f };
+            out[k] = lanes.min(f, lanes.splat(self.cap));
+        }
+        out
+    }
+
+    #[inline(always)]
+    fn energy<L: Lanes>(&self, lanes: L, y: L::F, r2: L::F, c: &[L::F; 4]) -> L::F {
+        let s2 = lanes.mul(c[0], y);
+        let s6 = lanes.mul(lanes.mul(s2, s2), s2);
+        let u = lanes.mul(lanes.mul(c[1], lanes.splat(1.0 / 12.0)), lanes.mul(s6, lanes.sub(s6, lanes.splat(1.0))));
+        let u = lanes.sub(u, c[2]);
+        let u =
+            if FORCE_SHIFT { lanes.mul_add(lanes.sub(lanes.sqrt(r2), lanes.splat(self.cutoff)), c[3], u) } else { u };
+        lanes.min(u, lanes.splat(self.cap))
+    }
+}
+
+/// Adds the forces of the pairs of `list` to `force`, and where `ENERGY` their energies, virials and number to
+/// `energy`, all over the law's scale.
+pub(super) struct Kernel<'a, P, const ENERGY: bool> {
+    pub law: P,
+    pub blocks: &'a Blocks,
+    pub list: &'a Pairs,
+    pub force: &'a mut [Octet],
+    pub energy: &'a mut [Octet],
+}
+
+/// Sums of a cluster against the blocks of a segment.
+struct Sums<L: Lanes> {
+    force: [[L::F; 3]; VECTORS],
+    energy: [[L::F; 3]; VECTORS],
+}
+
+impl<P: Law, const ENERGY: bool> lanes::Kernel for Kernel<'_, P, ENERGY> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) {
+        let Self { law, blocks, list, force, energy } = self;
+        // Slices of one length need but one test of an index.
+        let n = blocks.len();
+        let view = View {
+            law,
+            blocks,
+            position: &blocks.position[..n],
+            crossed: &blocks.crossed[..n],
+            kind: if P::TYPED && !blocks.kind.is_empty() { &blocks.kind[..n] } else { &[] },
+        };
+        let (force, energy) = (&mut force[..n], if ENERGY { &mut energy[..n] } else { energy });
+        for segment in &list.segments {
+            let cluster = segment.cluster as usize;
+            let (block, at) = (cluster / 2, cluster % 2 * CLUSTER);
+            let quad = Quad::<L>::new(lanes, blocks, cluster, segment.image);
+            let kinds = if P::TYPED && !view.kind.is_empty() { view.kind[block] } else { [0; BLOCK] };
+            let kinds: [u32; CLUSTER] = [kinds[at], kinds[at + 1], kinds[at + 2], kinds[at + 3]];
+            let zero = [[lanes.splat(0.0); 3]; VECTORS];
+            let mut sums = Sums::<L> { force: zero, energy: zero };
+            let with_images = segment.image != [0; 3] || view.crossed[block];
+            let mut listed = &list.blocks[segment.start as usize..segment.end as usize];
+            let mut to = Target { sums: &mut sums, force: &mut *force, energy: &mut *energy };
+            if let (true, &[own, ref others @ ..]) = (segment.own, listed) {
+                let [first, second] = own_pairs(cluster);
+                let pairs = [lanes.mask(first), lanes.mask(second)];
+                if with_images {
+                    view.add::<L, 2, ENERGY, true, true>(lanes, &quad, &kinds, [own as usize; 2], pairs, &mut to);
+                } else {
+                    view.add::<L, 2, ENERGY, false, true>(lanes, &quad, &kinds, [own as usize; 2], pairs, &mut to);
+                }
+                listed = others;
+            }
+            let all = [lanes.mask(u16::MAX); VECTORS];
+            if with_images {
+                for &j in listed {
+                    view.add::<L, 2, ENERGY, true, false>(lanes, &quad, &kinds, [j as usize; 2], all, &mut to);
+                }
+            } else {
+                let (twos, last) = listed.as_chunks::<2>();
+                for two in twos {
+                    let two = [two[0] as usize, two[1] as usize];
+                    if view.crossed[two[0]] | view.crossed[two[1]] {
+                        for j in two {
+                            view.add::<L, 2, ENERGY, true, false>(lanes, &quad, &kinds, [j; 2], all, &mut to);
+                        }
+                    } else {
+                        view.add::<L, 4, ENERGY, false, false>(lanes, &quad, &kinds, two, all, &mut to);
+                    }
+                }
+                for &j in last {
+                    let j = j as usize;
+                    if view.crossed[j] {
+                        view.add::<L, 2, ENERGY, true, false>(lanes, &quad, &kinds, [j; 2], all, &mut to);
+                    } else {
+                        view.add::<L, 2, ENERGY, false, false>(lanes, &quad, &kinds, [j; 2], all, &mut to);
+                    }
+                }
+            }
+            for axis in 0..3 {
+                let of_four = lanes.sum_halves(sums.force[0][axis], sums.force[1][axis]);
+                for (to, sum) in force[block].0[axis][at..at + CLUSTER].iter_mut().zip(of_four) {
+                    *to -= sum;
+                }
+                if ENERGY {
+                    let of_four = lanes.sum_halves(sums.energy[0][axis], sums.energy[1][axis]);
+                    for (to, sum) in energy[block].0[axis][at..at + CLUSTER].iter_mut().zip(of_four) {
+                        *to += sum;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// What the kernel adds to.
+struct Target<'a, L: Lanes> {
+    sums: &'a mut Sums<L>,
+    force: &'a mut [Octet],
+    energy: &'a mut [Octet],
+}
+
+/// What the kernel reads.
+struct View<'a, P> {
+    law: P,
+    blocks: &'a Blocks,
+    position: &'a [Octet],
+    crossed: &'a [bool],
+    kind: &'a [[u32; BLOCK]],
+}
+
+impl<P: Law> View<'_, P> {
+    /// The pairs of a cluster and one block (`K` = 2 vectors) or two (`K` = 4): all lanes, or where `MASKED` those of
+    /// `pairs`. Without `SHIFTED` none has an image.
+    #[inline(always)]
+    fn add<L: Lanes, const K: usize, const ENERGY: bool, const SHIFTED: bool, const MASKED: bool>(
+        &self,
+        lanes: L,
+        quad: &Quad<L>,
+        kinds: &[u32; CLUSTER],
+        j: [usize; 2],
+        pairs: [L::M; VECTORS],
+        to: &mut Target<L>,
+    ) {
+        let blocks = self.blocks;
+        let at = [twice(lanes, &self.position[j[0]]), twice(lanes, &self.position[j[1]])];
+        let range2 = lanes.splat(blocks.cutoff * blocks.cutoff);
+        let zero = lanes.splat(0.0);
+        let shifts = if SHIFTED { quad.shifts(lanes, blocks, j[0]) } else { [[zero; 3]; VECTORS] };
+        let mut d = [[zero; 3]; K];
+        let (mut r2, mut y, mut c) = ([zero; K], [zero; K], [[zero; 4]; K]);
+        let mut inside = [pairs[0]; K];
+        for k in 0..K {
+            d[k] = quad.displacement::<SHIFTED>(lanes, k % VECTORS, at[k / VECTORS], &shifts);
+        }
+        for k in 0..K {
+            r2[k] = squared_length(lanes, d[k]);
+        }
+        for k in 0..K {
+            let near = lanes.less(r2[k], range2);
+            inside[k] = if MASKED { lanes.and(near, pairs[k % VECTORS]) } else { near };
+            y[k] = lanes.reciprocal(inside[k], r2[k]);
+        }
+        for k in 0..K {
+            let kinds_i = [kinds[k % VECTORS * 2], kinds[k % VECTORS * 2 + 1]];
+            let kinds_j = if P::TYPED && !self.kind.is_empty() { &self.kind[j[k / VECTORS]] } else { &[0; BLOCK] };
+            c[k] = self.law.coefficients(lanes, kinds_i, kinds_j);
+        }
+        let mut f = self.law.f_over_r(lanes, &y, &c);
+        for k in 0..K {
+            // What adds up powers of y is zero outside; others must be made so.
+            f[k] = if P::TYPED { lanes.keep(inside[k], f[k]) } else { f[k] };
+            for axis in 0..3 {
+                d[k][axis] = lanes.mul(f[k], d[k][axis]);
+            }
+        }
+        for b in 0..K / VECTORS {
+            for axis in 0..3 {
+                let both = lanes.add(d[VECTORS * b][axis], d[VECTORS * b + 1][axis]);
+                lanes.add_halves(both, &mut to.force[j[b]].0[axis]);
+            }
+        }
+        for k in 0..K {
+            for axis in 0..3 {
+                let sum = &mut to.sums.force[k % VECTORS][axis];
+                *sum = lanes.add(*sum, d[k][axis]);
+            }
+        }
+        if ENERGY {
+            for k in 0..K {
+                let u = self.law.energy(lanes, y[k], r2[k], &c[k]);
+                let terms = [u, lanes.mul(f[k], r2[k]), lanes.splat(1.0)];
+                for (of, term) in terms.into_iter().enumerate() {
+                    let term = lanes.keep(inside[k], term);
+                    let sum = &mut to.sums.energy[k % VECTORS][of];
+                    *sum = lanes.add(*sum, term);
+                    lanes.add_halves(term, &mut to.energy[j[k / VECTORS]].0[of]);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,253 @@
+//! The lists of cluster pairs: built from the grid, pruned to what the next few evaluations need.
+
+use super::{
+    blocks::Blocks,
+    quad::{self, Quad, VECTORS, squared_length, twice},
+};
+use crate::{
+    Grid, GroupBox, Run,
+    lanes::{self, Lanes},
+};
+use nearfield_core::predicate::conservative_range;
+use rayon::prelude::*;
+use std::{
+    ops::{Range, RangeInclusive},
+    sync::atomic::{AtomicU64, Ordering::Relaxed},
+};
+
+/// Tasks for each thread: enough for those that end early to help the others.
+const TASKS_PER_THREAD: usize = 4;
+
+/// Fewest blocks worth a task.
+const LEAST_BLOCKS: usize = 16;
+
+/// Blocks listed with one cluster in one image.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Segment {
+    /// Two clusters to a block.
+    pub cluster: u32,
+    pub image: [i8; 3],
+    /// Whether the first of the blocks is the cluster's own.
+    pub own: bool,
+    pub start: u32,
+    pub end: u32,
+}
+
+/// A list of cluster pairs.
+#[derive(Debug, Default)]
+pub(super) struct Pairs {
+    pub segments: Vec<Segment>,
+    pub blocks: Vec<u32>,
+}
+
+impl Pairs {
+    fn clear(&mut self) {
+        self.segments.clear();
+        self.blocks.clear();
+    }
+
+    /// Closes a segment of the blocks that were added since the last one.
+    fn close(&mut self, cluster: u32, image: [i8; 3], start: u32) {
+        let end = self.blocks.len() as u32;
+        if end > start {
+            let own = self.blocks[start as usize] == cluster / 2;
+            self.segments.push(Segment { cluster, image, own, start, end });
+        }
+    }
+
+    fn bytes(&self) -> usize {
+        self.segments.capacity() * size_of::<Segment>() + 4 * self.blocks.capacity()
+    }
+}
+
+/// The lists of consecutive blocks: the work of one task.
+#[derive(Default)]
+pub(super) struct Task {
+    pub clusters_of: Range<usize>,
+    /// All within cutoff and skin.
+    pub outer: Pairs,
+    /// What may be within the cutoff before the next pruning.
+    pub inner: Pairs,
+    runs: Vec<Run>,
+    /// Blocks near the second cluster of the block at hand.
+    second: Vec<u32>,
+}
+
+/// The list of all pairs, by task.
+#[derive(Default)]
+pub(super) struct PairList {
+    pub tasks: Vec<Task>,
+}
+
+impl PairList {
+    /// Lists all pairs of clusters and blocks with particles within `reach`; false when that takes more than `budget`
+    /// bytes.
+    pub fn build(&mut self, grid: &Grid, blocks: &Blocks, reach: f32, budget: u64) -> bool {
+        let n = blocks.len();
+        let n_tasks = (TASKS_PER_THREAD * rayon::current_num_threads()).min(n.div_ceil(LEAST_BLOCKS)).max(1);
+        self.tasks.resize_with(n_tasks, Task::default);
+        let bytes = AtomicU64::new(0);
+        self.tasks.par_iter_mut().with_max_len(1).enumerate().for_each(|(t, task)| {
+            task.clusters_of = n * t / n_tasks..n * (t + 1) / n_tasks;
+            task.outer.clear();
+            super::isa().run(Build { grid, blocks, reach, task, bytes: &bytes, budget });
+        });
+        bytes.into_inner() <= budget
+    }
+
+    /// Takes from the outer lists what may come within the cutoff while particles keep to their budgets.
+    pub fn prune(&mut self, blocks: &Blocks) {
+        self.tasks.par_iter_mut().with_max_len(1).for_each(|task| super::isa().run(Prune { blocks, task }));
+    }
+
+    pub fn bytes(&self) -> usize {
+        self.tasks.iter().map(|t| t.outer.bytes() + t.inner.bytes() + 4 * t.second.capacity()).sum()
+    }
+}
+
+struct Build<'a> {
+    grid: &'a Grid,
+    blocks: &'a Blocks,
+    reach: f32,
+    task: &'a mut Task,
+    /// Of the lists of all tasks.
+    bytes: &'a AtomicU64,
+    budget: u64,
+}
+
+impl lanes::Kernel for Build<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) {
+        let Self { grid, blocks, reach, task, bytes, budget } = self;
+        let Task { clusters_of, outer, runs, second, .. } = task;
+        let mut counted = 0;
+        for b in clusters_of.clone() {
+            let group = bounds(blocks, b, reach);
+            runs.clear();
+            grid.find_rows(&group, runs);
+            let reach = lanes.splat(conservative_reach(&group, blocks.period).powi(2));
+            for runs in runs.chunk_by(|a, b| a.image == b.image) {
+                let image = runs[0].image;
+                let quads =
+                    [Quad::<L>::new(lanes, blocks, 2 * b, image), Quad::<L>::new(lanes, blocks, 2 * b + 1, image)];
+                let start = outer.blocks.len() as u32;
+                second.clear();
+                for run in runs {
+                    let first = blocks.block_of[run.start as usize].max(b as u32);
+                    let last = blocks.block_of[run.end as usize - 1];
+                    let near = [&mut outer.blocks, &mut *second];
+                    if image == [0; 3] {
+                        find_near::<L, false>(lanes, blocks, &quads, reach, first..=last, near);
+                    } else {
+                        find_near::<L, true>(lanes, blocks, &quads, reach, first..=last, near);
+                    }
+                }
+                outer.close(2 * b as u32, image, start);
+                let start = outer.blocks.len() as u32;
+                outer.blocks.extend_from_slice(second);
+                outer.close(2 * b as u32 + 1, image, start);
+            }
+            let now = (outer.segments.len() * size_of::<Segment>() + 4 * outer.blocks.len()) as u64;
+            // Twice: the inner list takes no more than the outer one.
+            if bytes.fetch_add(2 * (now - counted), Relaxed) > budget {
+                return;
+            }
+            counted = now;
+        }
+    }
+}
+
+/// Appends the blocks of a run that are within reach (squared) of either cluster of a block. No particle has crossed a
+/// face yet.
+#[inline(always)]
+fn find_near<L: Lanes, const IMAGES: bool>(
+    lanes: L,
+    blocks: &Blocks,
+    quads: &[Quad<L>; 2],
+    reach2: L::F,
+    run: RangeInclusive<u32>,
+    [first, second]: [&mut Vec<u32>; 2],
+) {
+    for j in run {
+        if any_within::<L, IMAGES>(lanes, blocks, &quads[0], j as usize, [reach2; VECTORS]) {
+            first.push(j);
+        }
+        if any_within::<L, IMAGES>(lanes, blocks, &quads[1], j as usize, [reach2; VECTORS]) {
+            second.push(j);
+        }
+    }
+}
+
+/// Whether any pair of a cluster and block `j` is within its reach (squared).
+#[inline(always)]
+fn any_within<L: Lanes, const IMAGES: bool>(
+    lanes: L,
+    blocks: &Blocks,
+    quad: &Quad<L>,
+    j: usize,
+    reach2: [L::F; VECTORS],
+) -> bool {
+    let at = twice(lanes, &blocks.position[j]);
+    let shifts = if IMAGES { quad.shifts(lanes, blocks, j) } else { [at; VECTORS] };
+    let first = squared_length(lanes, quad.displacement::<IMAGES>(lanes, 0, at, &shifts));
+    let second = squared_length(lanes, quad.displacement::<IMAGES>(lanes, 1, at, &shifts));
+    lanes.lt(first, reach2[0]) | lanes.lt(second, reach2[1]) != 0
+}
+
+/// The box around the particles of block `b`.
+fn bounds(blocks: &Blocks, b: usize, radius: f32) -> GroupBox {
+    let n = blocks.particles(b).len();
+    let position = &blocks.position[b].0;
+    let over = |from: f32, f: fn(f32, f32) -> f32| position.map(|x| x[..n].iter().fold(from, |m, &v| f(m, v)));
+    GroupBox { lo: over(f32::INFINITY, f32::min), hi: over(f32::NEG_INFINITY, f32::max), radius }
+}
+
+/// The group's radius with an allowance for rounding.
+fn conservative_reach(group: &GroupBox, period: [f32; 3]) -> f32 {
+    let largest = |values: [f32; 3]| values.iter().fold(0.0f32, |m, v| m.max(v.abs()));
+    // Whatever is in range has coordinates no larger than this.
+    conservative_range(group.radius, largest(group.lo).max(largest(group.hi)) + largest(period) + group.radius)
+}
+
+struct Prune<'a> {
+    blocks: &'a Blocks,
+    task: &'a mut Task,
+}
+
+impl lanes::Kernel for Prune<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) {
+        let Self { blocks, task } = self;
+        let Task { outer, inner, .. } = task;
+        inner.clear();
+        for segment in &outer.segments {
+            let cluster = segment.cluster as usize;
+            let (block, at) = (cluster / 2, cluster % 2 * quad::CLUSTER);
+            let quad = Quad::<L>::new(lanes, blocks, cluster, segment.image);
+            let budget = &blocks.budget[block];
+            let range = |lane: usize| conservative_range(blocks.cutoff + budget[at + lane], blocks.extent);
+            let ranges = [lanes.halves(range(0), range(1)), lanes.halves(range(2), range(3))];
+            let with_images = segment.image != [0; 3] || blocks.crossed[block];
+            let start = inner.blocks.len() as u32;
+            for &j in &outer.blocks[segment.start as usize..segment.end as usize] {
+                let b = j as usize;
+                let theirs = lanes.twice(&blocks.budget[b]);
+                let reach = [lanes.add(ranges[0], theirs), lanes.add(ranges[1], theirs)];
+                let reach2 = [lanes.mul(reach[0], reach[0]), lanes.mul(reach[1], reach[1])];
+                let near = if with_images || blocks.crossed[b] {
+                    any_within::<L, true>(lanes, blocks, &quad, b, reach2)
+                } else {
+                    any_within::<L, false>(lanes, blocks, &quad, b, reach2)
+                };
+                if near {
+                    inner.blocks.push(j);
+                }
+            }
+            inner.close(segment.cluster, segment.image, start);
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! Four particles of a cluster against the eight of a block: displacements by the definition of a neighbour.
+
+use super::{
+    BLOCK,
+    blocks::{Blocks, Octet},
+};
+use crate::lanes::Lanes;
+
+/// Particles in a cluster.
+pub(super) const CLUSTER: usize = 4;
+
+/// Vectors for a cluster: each holds two of its particles, eight times.
+pub(super) const VECTORS: usize = CLUSTER / 2;
+
+/// For the first and second cluster of a block and each vector, the lanes of pairs i < j within the block.
+const LATER: [[u16; VECTORS]; 2] = {
+    let mut masks = [[0; VECTORS]; 2];
+    let mut i = 0;
+    while i < BLOCK {
+        masks[i / CLUSTER][i % CLUSTER / 2] |= ((0xff << (i + 1)) & 0xff) << (8 * (i % 2));
+        i += 1;
+    }
+    masks
+};
+
+/// A cluster in vectors.
+#[derive(Clone, Copy)]
+pub(super) struct Quad<L: Lanes> {
+    position: [[L::F; 3]; VECTORS],
+    block: usize,
+    at: usize,
+    image: [L::F; 3],
+    /// The shift of the image where nobody has crossed.
+    shift: [L::F; 3],
+    crossed: bool,
+}
+
+impl<L: Lanes> Quad<L> {
+    /// Cluster `cluster`, to be paired with blocks seen in `image`.
+    #[inline(always)]
+    pub fn new(lanes: L, blocks: &Blocks, cluster: usize, image: [i8; 3]) -> Self {
+        let (block, at) = (cluster / 2, cluster % 2 * CLUSTER);
+        let position = &blocks.position[block];
+        let [x, y, z] = image.map(f32::from);
+        let [px, py, pz] = blocks.period;
+        Self {
+            position: [halves(lanes, position, at), halves(lanes, position, at + 2)],
+            block,
+            at,
+            image: [lanes.splat(x), lanes.splat(y), lanes.splat(z)],
+            shift: [lanes.splat(x * px), lanes.splat(y * py), lanes.splat(z * pz)],
+            crossed: blocks.crossed[block],
+        }
+    }
+
+    /// What is added to displacements to block `j`, for each vector: the image and the crossings of both, in periods.
+    #[inline(always)]
+    pub fn shifts(&self, lanes: L, blocks: &Blocks, j: usize) -> [[L::F; 3]; VECTORS] {
+        if !(self.crossed | blocks.crossed[j]) {
+            return [self.shift; VECTORS];
+        }
+        let theirs = twice(lanes, &blocks.crossings[j]);
+        let mut shifts = [self.shift; VECTORS];
+        for v in 0..VECTORS {
+            let own = halves(lanes, &blocks.crossings[self.block], self.at + 2 * v);
+            for axis in 0..3 {
+                let image = lanes.sub(lanes.add(self.image[axis], theirs[axis]), own[axis]);
+                shifts[v][axis] = lanes.mul(image, lanes.splat(blocks.period[axis]));
+            }
+        }
+        shifts
+    }
+
+    /// `(x_j - x_i) + shift` of vector `v`. Without `SHIFTED` there is no shift.
+    #[inline(always)]
+    pub fn displacement<const SHIFTED: bool>(
+        &self,
+        lanes: L,
+        v: usize,
+        j: [L::F; 3],
+        shifts: &[[L::F; 3]; VECTORS],
+    ) -> [L::F; 3] {
+        let mut d = j;
+        for axis in 0..3 {
+            d[axis] = lanes.sub(j[axis], self.position[v][axis]);
+            if SHIFTED {
+                d[axis] = lanes.add(d[axis], shifts[v][axis]);
+            }
+        }
+        d
+    }
+}
+
+// No closures below or in kernels: they would be compiled without the instruction set.
+
+/// Element `at` of each array in lanes 0 to 7, the one after it in lanes 8 to 15.
+#[inline(always)]
+fn halves<L: Lanes>(lanes: L, octet: &Octet, at: usize) -> [L::F; 3] {
+    let [x, y, z] = &octet.0;
+    [lanes.halves(x[at], x[at + 1]), lanes.halves(y[at], y[at + 1]), lanes.halves(z[at], z[at + 1])]
+}
+
+/// An array of eight vectors, twice in each vector.
+#[inline(always)]
+pub(super) fn twice<L: Lanes>(lanes: L, octet: &Octet) -> [L::F; 3] {
+    [lanes.twice(&octet.0[0]), lanes.twice(&octet.0[1]), lanes.twice(&octet.0[2])]
+}
+
+/// The squared length as the predicate defines it.
+#[inline(always)]
+pub(super) fn squared_length<L: Lanes>(lanes: L, [x, y, z]: [L::F; 3]) -> L::F {
+    lanes.mul_add(x, x, lanes.mul_add(y, y, lanes.mul(z, z)))
+}
+
+/// The lanes of cluster `cluster` that are pairs, where a block is listed with a cluster of its own.
+#[inline(always)]
+pub(super) fn own_pairs(cluster: usize) -> [u16; VECTORS] {
+    LATER[cluster % 2]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn masks_of_a_block_with_itself_hold_each_pair_once() {
+        let mut seen = [[0; BLOCK]; BLOCK];
+        for cluster in 0..2 {
+            for (v, mask) in own_pairs(cluster).into_iter().enumerate() {
+                for lane in (0..16).filter(|lane| mask >> lane & 1 == 1) {
+                    seen[CLUSTER * cluster + 2 * v + lane / 8][lane % 8] += 1;
+                }
+            }
+        }
+        for (i, row) in seen.iter().enumerate() {
+            for (j, &count) in row.iter().enumerate() {
+                assert_eq!(count, u32::from(i < j), "{i} {j}");
+            }
+        }
+    }
+}
