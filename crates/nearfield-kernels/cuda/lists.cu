@@ -20,7 +20,7 @@ template <class V> __device__ inline void list_all(const ListArgs& a) {
     lister.store(cluster);
 }
 
-KERNEL_MIN_BLOCKS(cell_list_count, ListArgs, WARPS_PER_BLOCK* WARP, 6) {
+KERNEL_MIN_BLOCKS(cell_list_count, ListArgs, WARPS_PER_BLOCK* WARP, 7) {
     list_by_cells<ListCount<false, false>, false>(a);
 }
 
