@@ -11,7 +11,7 @@ use crate::{
 use nearfield_core::predicate::conservative_range;
 use rayon::prelude::*;
 use std::{
-    ops::{Range, RangeInclusive},
+    ops::Range,
     sync::atomic::{AtomicU64, Ordering::Relaxed},
 };
 
@@ -46,12 +46,11 @@ impl Pairs {
         self.blocks.clear();
     }
 
-    /// Closes a segment of the blocks that were added since the last one.
-    fn close(&mut self, cluster: u32, image: [i8; 3], start: u32) {
-        let end = self.blocks.len() as u32;
+    /// Closes a segment of the blocks from `start` to `end`.
+    fn close(&mut self, cluster: u32, image: [i8; 3], start: usize, end: usize) {
         if end > start {
-            let own = self.blocks[start as usize] == cluster / 2;
-            self.segments.push(Segment { cluster, image, own, start, end });
+            let own = self.blocks[start] == cluster / 2;
+            self.segments.push(Segment { cluster, image, own, start: start as u32, end: end as u32 });
         }
     }
 
@@ -132,22 +131,22 @@ impl lanes::Kernel for Build<'_> {
                 let image = runs[0].image;
                 let quads =
                     [Quad::<L>::new(lanes, blocks, 2 * b, image), Quad::<L>::new(lanes, blocks, 2 * b + 1, image)];
-                let start = outer.blocks.len() as u32;
+                let start = outer.blocks.len();
                 second.clear();
                 for run in runs {
                     let first = blocks.block_of[run.start as usize].max(b as u32);
                     let last = blocks.block_of[run.end as usize - 1];
                     let near = [&mut outer.blocks, &mut *second];
                     if image == [0; 3] {
-                        find_near::<L, false>(lanes, blocks, &quads, reach, first..=last, near);
+                        find_near::<L, false>(lanes, blocks, &quads, reach, first..last + 1, near);
                     } else {
-                        find_near::<L, true>(lanes, blocks, &quads, reach, first..=last, near);
+                        find_near::<L, true>(lanes, blocks, &quads, reach, first..last + 1, near);
                     }
                 }
-                outer.close(2 * b as u32, image, start);
-                let start = outer.blocks.len() as u32;
+                let middle = outer.blocks.len();
                 outer.blocks.extend_from_slice(second);
-                outer.close(2 * b as u32 + 1, image, start);
+                outer.close(2 * b as u32, image, start, middle);
+                outer.close(2 * b as u32 + 1, image, middle, outer.blocks.len());
             }
             let now = (outer.segments.len() * size_of::<Segment>() + 4 * outer.blocks.len()) as u64;
             // Twice: the inner list takes no more than the outer one.
@@ -167,17 +166,21 @@ fn find_near<L: Lanes, const IMAGES: bool>(
     blocks: &Blocks,
     quads: &[Quad<L>; 2],
     reach2: L::F,
-    run: RangeInclusive<u32>,
+    run: Range<u32>,
     [first, second]: [&mut Vec<u32>; 2],
 ) {
+    // Each is written and then kept or not: a branch would be foretold wrongly half of the time.
+    let (mut a, mut b) = (first.len(), second.len());
+    first.resize(a + run.len(), 0);
+    second.resize(b + run.len(), 0);
     for j in run {
-        if any_within::<L, IMAGES>(lanes, blocks, &quads[0], j as usize, [reach2; VECTORS]) {
-            first.push(j);
-        }
-        if any_within::<L, IMAGES>(lanes, blocks, &quads[1], j as usize, [reach2; VECTORS]) {
-            second.push(j);
-        }
+        first[a] = j;
+        second[b] = j;
+        a += usize::from(any_within::<L, IMAGES>(lanes, blocks, &quads[0], j as usize, [reach2; VECTORS]));
+        b += usize::from(any_within::<L, IMAGES>(lanes, blocks, &quads[1], j as usize, [reach2; VECTORS]));
     }
+    first.truncate(a);
+    second.truncate(b);
 }
 
 /// Whether any pair of a cluster and block `j` is within its reach (squared).
@@ -223,7 +226,10 @@ impl lanes::Kernel for Prune<'_> {
     fn run<L: Lanes>(self, lanes: L) {
         let Self { blocks, task } = self;
         let Task { outer, inner, .. } = task;
-        inner.clear();
+        inner.segments.clear();
+        // What is beyond the last segment is left over.
+        inner.blocks.resize(outer.blocks.len(), 0);
+        let mut end = 0;
         for segment in &outer.segments {
             let cluster = segment.cluster as usize;
             let (block, at) = (cluster / 2, cluster % 2 * quad::CLUSTER);
@@ -232,7 +238,7 @@ impl lanes::Kernel for Prune<'_> {
             let range = |lane: usize| conservative_range(blocks.cutoff + budget[at + lane], blocks.extent);
             let ranges = [lanes.halves(range(0), range(1)), lanes.halves(range(2), range(3))];
             let with_images = segment.image != [0; 3] || blocks.crossed[block];
-            let start = inner.blocks.len() as u32;
+            let start = end;
             for &j in &outer.blocks[segment.start as usize..segment.end as usize] {
                 let b = j as usize;
                 let theirs = lanes.twice(&blocks.budget[b]);
@@ -243,11 +249,11 @@ impl lanes::Kernel for Prune<'_> {
                 } else {
                     any_within::<L, false>(lanes, blocks, &quad, b, reach2)
                 };
-                if near {
-                    inner.blocks.push(j);
-                }
+                // Written and then kept or not: a branch would be foretold wrongly half of the time.
+                inner.blocks[end] = j;
+                end += usize::from(near);
             }
-            inner.close(segment.cluster, segment.image, start);
+            inner.close(segment.cluster, segment.image, start, end);
         }
     }
 }

@@ -41,6 +41,8 @@ struct TaskSums {
     energy: Vec<Octet>,
     exact: Vec<Exact>,
     touched: Vec<u32>,
+    /// See [`Kernel`].
+    crossed: Vec<u32>,
     /// Whether a page is in `touched`.
     seen: Vec<bool>,
 }
@@ -99,14 +101,14 @@ impl PageSums {
     pub fn evaluate<P: Law>(&mut self, blocks: &Blocks, list: &PairList, law: P, out: Output) -> bool {
         let (n, energies) = (self.n_blocks, !out.energy.is_empty());
         self.tasks.par_iter_mut().zip(&list.tasks).with_max_len(1).for_each(|(sums, task)| {
-            let TaskSums { force, energy, touched, .. } = sums;
+            let TaskSums { force, energy, touched, crossed, .. } = sums;
             clear(force, touched, n);
             let list = &task.inner;
             if energies {
                 clear(energy, touched, n);
-                super::isa().run(Kernel::<P, true> { law, blocks, list, force, energy });
+                super::isa().run(Kernel::<P, true> { law, blocks, list, force, energy, crossed });
             } else {
-                super::isa().run(Kernel::<P, false> { law, blocks, list, force, energy: &mut [] });
+                super::isa().run(Kernel::<P, false> { law, blocks, list, force, energy: &mut [], crossed });
             }
         });
         let scale = law.scale();

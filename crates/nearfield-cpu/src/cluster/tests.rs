@@ -203,8 +203,9 @@ fn by_vectors<P: Law>(isa: Isa, built: &Built, law: P) -> Vec<[f64; 6]> {
     let (mut force, mut energy, mut only) = (zeros.clone(), zeros.clone(), zeros);
     for task in &list.tasks {
         let list = &task.inner;
-        isa.run(Kernel::<P, true> { law, blocks, list, force: &mut force, energy: &mut energy });
-        isa.run(Kernel::<P, false> { law, blocks, list, force: &mut only, energy: &mut [] });
+        let crossed = &mut Vec::new();
+        isa.run(Kernel::<P, true> { law, blocks, list, force: &mut force, energy: &mut energy, crossed });
+        isa.run(Kernel::<P, false> { law, blocks, list, force: &mut only, energy: &mut [], crossed });
     }
     let mut sums = vec![[0.0; 6]; built.system.particles.len()];
     for b in 0..blocks.len() {
