@@ -48,7 +48,7 @@ impl Plain {
         let c = physics.interaction.single(physics.cutoff()).0;
         let scale = (48.0 * f64::from(kind.epsilon) * sigma6 * sigma6) as f32;
         let usable = (0.02..=20.0).contains(&kind.sigma)
-            && physics.cutoff() <= 100.0
+            && physics.cutoff() <= 300.0
             && physics.cap == f32::INFINITY
             && scale.is_normal()
             && physics.interaction.truncation != Truncation::Force;
@@ -212,7 +212,7 @@ impl<P: Law, const ENERGY: bool> lanes::Kernel for Kernel<'_, P, ENERGY> {
             let zero = [[lanes.splat(0.0); 3]; VECTORS];
             let mut sums = Sums::<L> { force: zero, energy: zero };
             let mut target = Target {
-                quad: Quad::<L>::new(lanes, blocks, cluster, segment.image),
+                quad: Quad::<L>::new(lanes, blocks, view.position, cluster, segment.image),
                 kinds: [kinds[at], kinds[at + 1], kinds[at + 2], kinds[at + 3]],
                 sums: &mut sums,
                 force: &mut *force,

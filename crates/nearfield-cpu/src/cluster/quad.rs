@@ -36,11 +36,11 @@ pub(super) struct Quad<L: Lanes> {
 }
 
 impl<L: Lanes> Quad<L> {
-    /// Cluster `cluster`, to be paired with blocks seen in `image`.
+    /// Cluster `cluster`, of blocks at `position`, to be paired with blocks seen in `image`.
     #[inline(always)]
-    pub fn new(lanes: L, blocks: &Blocks, cluster: usize, image: [i8; 3]) -> Self {
+    pub fn new(lanes: L, blocks: &Blocks, position: &[Octet], cluster: usize, image: [i8; 3]) -> Self {
         let (block, at) = (cluster / 2, cluster % 2 * CLUSTER);
-        let position = &blocks.position[block];
+        let position = &position[block];
         let [x, y, z] = image.map(f32::from);
         let [px, py, pz] = blocks.period;
         Self {
