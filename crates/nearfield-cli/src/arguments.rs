@@ -1,5 +1,6 @@
 //! What can be typed.
 
+pub mod bench;
 pub mod render;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -35,6 +36,12 @@ pub enum Command {
     /// Draw a picture of a configuration, of its neighbourhoods or of a trajectory.
     #[command(after_help = render::HELP)]
     Render(render::RenderArguments),
+    /// Measure the papers' experiments on this machine.
+    #[command(after_help = bench::BENCH_HELP)]
+    Bench(bench::BenchArguments),
+    /// Draw results of `bench` beside the papers' and write an HTML report.
+    #[command(after_help = bench::PLOT_HELP)]
+    Plot(bench::PlotArguments),
     /// Say what is usable on this machine, and why the rest is not.
     Devices(Listing),
     /// List every method, what it does and what it supports.
@@ -99,6 +106,9 @@ pub struct Run {
     /// Print the configuration with every key and its default, and stop.
     #[arg(long)]
     pub print_config: bool,
+    /// Say at the start and at the end which methods could be used, what steps by them are predicted to take and took.
+    #[arg(long)]
+    pub explain: bool,
 }
 
 /// How to compute, where there is no configuration file or it is to be overruled.

@@ -17,6 +17,11 @@ impl Failure {
         Self { message: message.to_string(), is_request: true }
     }
 
+    /// The request was carried out, and something in it went wrong.
+    pub fn execution(message: impl fmt::Display) -> Self {
+        Self { message: message.to_string(), is_request: false }
+    }
+
     /// Puts what was being read before the message.
     pub fn within(mut self, place: impl fmt::Display) -> Self {
         self.message = format!("{place}: {}", self.message);

@@ -17,6 +17,8 @@ fn main() -> ExitCode {
         Command::Neighbors(neighbors) => commands::neighbors::run(&neighbors),
         Command::Generate(generate) => commands::generate::run(&generate),
         Command::Render(render) => commands::render::run(&render),
+        Command::Bench(bench) => commands::bench::run(&bench),
+        Command::Plot(plot) => commands::plot::run(&plot),
         Command::Devices(listing) => commands::devices::run(listing.json),
         Command::Methods(listing) => commands::methods::run(listing.json),
     };

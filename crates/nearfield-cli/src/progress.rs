@@ -65,3 +65,29 @@ impl PictureBar {
         self.0.finish_and_clear();
     }
 }
+
+/// A bar of the measurements of a suite.
+pub struct SuiteBar(ProgressBar);
+
+impl SuiteBar {
+    /// A bar of the suite of that name.
+    pub fn new(suite: &'static str) -> Self {
+        let bar = ProgressBar::with_draw_target(Some(0), ProgressDrawTarget::stderr());
+        let template = "{prefix:11} {bar:32.cyan/black} {pos}/{len}  {eta} left  {wide_msg}";
+        bar.set_style(ProgressStyle::with_template(template).expect("the template is valid"));
+        bar.set_prefix(suite);
+        Self(bar)
+    }
+
+    /// Shows what comes next.
+    pub fn update(&self, done: usize, total: usize, what: &str) {
+        self.0.set_length(total as u64);
+        self.0.set_position(done as u64);
+        self.0.set_message(what.to_owned());
+    }
+
+    /// Removes the bar.
+    pub fn clear(&self) {
+        self.0.finish_and_clear();
+    }
+}

@@ -93,6 +93,7 @@ macro_rules! small_bodies {
             reports: every_never_refits_and_fixed_builds_at_each_period,
             reports: a_skin_saves_list_builds,
             reports: history_holds_each_evaluation_while_it_is_recorded,
+            reports: a_policy_that_looks_at_energy_reads_the_meter,
         }
     };
 }

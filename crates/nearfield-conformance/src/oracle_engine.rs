@@ -6,7 +6,7 @@ use nearfield_core::{
     Dynamics, Engine, Error, ListKind, ListRequest, Method, NeighborList, Particles, PerParticle, Plan, Quantities,
     Report, Result, System, Totals, Vec3s,
     engine::StepCost,
-    maintenance::{Action, Motion, Policy},
+    maintenance::{Action, EnergyCounter, Motion, Policy},
     oracle::{self, Pair, Reference},
     predicate,
 };
@@ -348,5 +348,11 @@ impl Engine for OracleEngine {
 
     fn record_history(&mut self, on: bool) {
         self.record_history = on;
+    }
+
+    fn attach_meter(&mut self, counter: Box<dyn EnergyCounter>) {
+        if let Some(loaded) = &mut self.loaded {
+            loaded.policy.attach(counter);
+        }
     }
 }

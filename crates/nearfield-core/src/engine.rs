@@ -2,7 +2,7 @@
 //!
 //! State stays on the device between calls. Inner loops are monomorphic behind this boundary.
 
-use crate::{Dynamics, ListRequest, NeighborList, Particles, Plan, Result, System, Vec3s};
+use crate::{Dynamics, ListRequest, NeighborList, Particles, Plan, Result, System, Vec3s, maintenance::EnergyCounter};
 use serde::{Deserialize, Serialize};
 
 /// What an evaluation computes beside forces.
@@ -86,6 +86,8 @@ pub struct Report {
     pub integrate_seconds: f64,
     /// Bytes held by the engine.
     pub bytes: u64,
+    /// Bytes of these that the structure takes, with what its method stores beside it, such as a list.
+    pub structure_bytes: u64,
     /// Cost of each evaluation, when recording was asked for.
     pub history: Vec<StepCost>,
 }
@@ -108,6 +110,7 @@ impl Report {
             query_seconds: self.query_seconds + later.query_seconds,
             integrate_seconds: self.integrate_seconds + later.integrate_seconds,
             bytes: later.bytes,
+            structure_bytes: later.structure_bytes,
             history: self.history,
         }
     }
@@ -197,4 +200,10 @@ pub trait Engine: Send {
 
     /// Starts or stops recording [`Report::history`].
     fn record_history(&mut self, on: bool);
+
+    /// Gives the rebuild policy of the system, right after [`Engine::load`], something to read the device's energy from.
+    /// [`crate::Maintenance::GradientJoules`] has no use without it, other policies none for it.
+    fn attach_meter(&mut self, counter: Box<dyn EnergyCounter>) {
+        drop(counter);
+    }
 }

@@ -106,7 +106,7 @@ named_enum! {
 }
 
 /// Everything about how to compute, nothing about what.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
     /// The method.
     pub method: Method,

@@ -4,10 +4,11 @@
 use nearfield_core::{
     Maintenance,
     engine::StepCost,
-    maintenance::{Action, Motion, Policy, optimal_updates, optimal_updates_exact},
+    maintenance::{Action, EnergyCounter, Motion, Policy, optimal_updates, optimal_updates_exact},
 };
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use std::sync::{Arc, Mutex};
 
 /// Paper A's cost model: a query costs `query + growth * k` at the k-th step after a rebuild.
 #[derive(Clone, Copy, Debug)]
@@ -278,10 +279,82 @@ fn displacement_rebuilds_after_half_a_radius_or_fifty_steps() {
 
 #[test]
 fn names_of_policies_read_back() {
-    for text in ["every", "fixed:7", "average", "gradient", "displacement"] {
+    for text in ["every", "fixed:7", "average", "gradient", "gradient:joules", "displacement"] {
         assert_eq!(text.parse::<Maintenance>().unwrap().to_string(), text);
     }
     for text in ["fixed:0", "fixed:", "fixed:-1", "fixed:x", "Every", ""] {
         assert!(text.parse::<Maintenance>().is_err(), "{text}");
     }
+}
+
+/// A device whose counter is refreshed ten times a second.
+#[derive(Default)]
+struct Device {
+    joules: f64,
+    seconds: f64,
+    shown: f64,
+}
+
+impl Device {
+    fn spend(&mut self, joules: f64, seconds: f64) {
+        let tenths = |seconds: f64| (10.0 * seconds).floor();
+        if tenths(self.seconds + seconds) > tenths(self.seconds) {
+            self.shown = self.joules;
+        }
+        self.joules += joules;
+        self.seconds += seconds;
+    }
+}
+
+struct Meter(Arc<Mutex<Device>>);
+
+impl EnergyCounter for Meter {
+    fn read(&mut self) -> (f64, f64) {
+        let device = self.0.lock().unwrap();
+        (device.shown, device.seconds)
+    }
+}
+
+/// A device that draws 100 W, and `building` times as much while it builds. Gives the joules of a step in the second
+/// half of the run, and the builds there.
+fn joules_a_step(maintenance: Maintenance, building: f64, metered: bool) -> (f64, usize) {
+    const STEPS: usize = 30_000;
+    const REST: f64 = 0.001;
+    let device = Arc::new(Mutex::new(Device::default()));
+    let mut policy = maintenance.policy();
+    if metered {
+        policy.attach(Box::new(Meter(device.clone())));
+    }
+    let mut spent = Vec::new();
+    let use_energy = |_, cost: &mut StepCost| {
+        let power = if cost.built { building } else { 1.0 };
+        let joules = 100.0 * (power * cost.structure + cost.query);
+        device.lock().unwrap().spend(joules + 100.0 * REST, total(*cost) + REST);
+        spent.push(joules);
+    };
+    let steps = simulate(&mut *policy, STEPS, |_| MILLISECONDS, use_energy);
+    (spent[STEPS / 2..].iter().sum::<f64>() / (STEPS / 2) as f64, builds(&steps[STEPS / 2..]))
+}
+
+/// So that a reading of the meter covers a few tens of steps.
+const MILLISECONDS: Model = Model { rebuild: 0.010, refit: 0.001, query: 0.005, growth: 0.0001 };
+
+#[test]
+fn gradient_for_joules_rebuilds_less_where_builds_draw_more_power_and_saves_energy() {
+    let (plain, often) = joules_a_step(Maintenance::Gradient, 4.0, false);
+    let (saving, rarely) = joules_a_step(Maintenance::GradientJoules, 4.0, true);
+    assert!(rarely as f64 <= 0.75 * often as f64, "{rarely} builds against {often}");
+    // The best fixed period at those powers.
+    let dear = Model { rebuild: 4.0 * MILLISECONDS.rebuild, ..MILLISECONDS };
+    let optimum = 100.0 * dear.best().1;
+    assert!(saving < 0.97 * plain && saving <= 1.03 * optimum, "{saving} J against {plain} J, at best {optimum} J");
+}
+
+#[test]
+fn gradient_for_joules_is_gradient_where_power_is_constant_or_unknown() {
+    let (_, plain) = joules_a_step(Maintenance::Gradient, 1.0, false);
+    let (_, metered) = joules_a_step(Maintenance::GradientJoules, 1.0, true);
+    let (_, unmetered) = joules_a_step(Maintenance::GradientJoules, 4.0, false);
+    assert_eq!(unmetered, plain);
+    assert!(metered.abs_diff(plain) * 10 <= plain, "{metered} builds against {plain}");
 }

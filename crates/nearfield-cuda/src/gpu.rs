@@ -174,6 +174,15 @@ pub enum Bodies {
     Triangles(Ptr<Triangle>),
 }
 
+/// What an acceleration structure is to be good at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Preference {
+    /// Being built and refitted quickly.
+    Builds,
+    /// Being traced quickly.
+    Traces,
+}
+
 /// Ray tracing against boxes, spheres and triangles.
 pub trait RayTracing {
     /// What traces, for reports.
@@ -242,14 +251,14 @@ pub unsafe fn trace<A: Layout>(
 
 /// A bounding-volume hierarchy in device memory.
 pub trait AccelerationStructure: Send {
-    /// Builds over `n` bodies.
+    /// Builds over `n` bodies. A preference is a wish.
     ///
     /// # Safety
     /// The addresses are of `n` bodies until the work is done.
     ///
     /// # Errors
     /// [`nearfield_core::Error::OutOfMemory`], [`nearfield_core::Error::Device`].
-    unsafe fn build(&mut self, bodies: Bodies, n: u32) -> Result<()>;
+    unsafe fn build(&mut self, bodies: Bodies, n: u32, preference: Preference) -> Result<()>;
 
     /// Fits the hierarchy of the last build to bodies that have changed, `n` of the same kind as then.
     ///

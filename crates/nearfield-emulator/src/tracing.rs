@@ -7,7 +7,7 @@ use crate::{
     primitives::{Primitives, Shapes},
 };
 use nearfield_core::{Error, Result};
-use nearfield_cuda::gpu::{AccelerationStructure, Bodies};
+use nearfield_cuda::gpu::{AccelerationStructure, Bodies, Preference};
 use nearfield_kernels::{Primitive, Ptr};
 use std::{collections::HashMap, ffi::CStr, slice, sync::Arc};
 
@@ -109,7 +109,7 @@ impl Acceleration {
 }
 
 impl AccelerationStructure for Acceleration {
-    unsafe fn build(&mut self, bodies: Bodies, n: u32) -> Result<()> {
+    unsafe fn build(&mut self, bodies: Bodies, n: u32, _: Preference) -> Result<()> {
         let shared = self.shared.clone();
         let mut state = shared.lock();
         self.clear(&mut state, n as usize)?;

@@ -4,7 +4,7 @@ mod common;
 use bytemuck::{Pod, Zeroable};
 use common::*;
 use nearfield_core::Result;
-use nearfield_cuda::gpu::{AccelerationStructure, Bodies, Gpu, RayTracing, Trace, Triangle};
+use nearfield_cuda::gpu::{AccelerationStructure, Bodies, Gpu, Preference, RayTracing, Trace, Triangle};
 use nearfield_emulator::Emulator;
 use nearfield_kernels::{Float4, Primitive, Ptr};
 
@@ -42,7 +42,7 @@ fn crossings(gpu: &Emulator, handle: u64, primitive: Primitive, origins: &[[f32;
 fn built(gpu: &Emulator, bodies: Bodies, n: u32) -> Box<dyn AccelerationStructure> {
     let mut structure = tracing(gpu).structure().expect("a structure");
     // SAFETY: the caller has as many.
-    unsafe { structure.build(bodies, n) }.expect("a build");
+    unsafe { structure.build(bodies, n, Preference::Traces) }.expect("a build");
     structure
 }
 

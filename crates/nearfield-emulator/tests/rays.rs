@@ -4,7 +4,7 @@ mod common;
 use bytemuck::{Pod, Zeroable};
 use common::*;
 use nearfield_core::Result;
-use nearfield_cuda::gpu::{Aabb, AccelerationStructure, Bodies, Gpu, RayTracing, Trace};
+use nearfield_cuda::gpu::{Aabb, AccelerationStructure, Bodies, Gpu, Preference, RayTracing, Trace};
 use nearfield_emulator::Emulator;
 use nearfield_kernels::{Float4, Primitive, Ptr};
 
@@ -89,7 +89,7 @@ fn built(gpu: &Emulator, boxes: &[Aabb]) -> (Box<dyn AccelerationStructure>, Ptr
     let address = Ptr::new(buffer(gpu, boxes));
     let mut structure = tracing(gpu).structure().unwrap();
     // SAFETY: as many as there are.
-    unsafe { structure.build(Bodies::Boxes(address), boxes.len() as u32) }.unwrap();
+    unsafe { structure.build(Bodies::Boxes(address), boxes.len() as u32, Preference::Traces) }.unwrap();
     (structure, address)
 }
 
@@ -169,7 +169,7 @@ fn outdated_handles_and_instances_are_reported() {
     instances.build_instances(&*structure, &[[0.0; 3]]).unwrap();
     let old = structure.handle();
     // SAFETY: as many as there are.
-    unsafe { structure.build(Bodies::Boxes(address), 50) }.unwrap();
+    unsafe { structure.build(Bodies::Boxes(address), 50, Preference::Traces) }.unwrap();
     assert!(failure(trace(&gpu, instances.handle(), &points)).contains("rebuilt or dropped"));
     assert!(failure(trace(&gpu, old, &points)).contains("no acceleration structure"));
     trace(&gpu, structure.handle(), &points).unwrap();
@@ -185,7 +185,7 @@ fn structures_take_memory_and_give_it_back() {
     let mut structure = tracing(&gpu).structure().unwrap();
     assert_eq!((structure.handle(), structure.bytes()), (0, 0));
     // SAFETY: as many as there are.
-    unsafe { structure.build(Bodies::Boxes(address), 100) }.unwrap();
+    unsafe { structure.build(Bodies::Boxes(address), 100, Preference::Traces) }.unwrap();
     assert!(structure.bytes() > 0);
     assert_eq!(gpu.memory().unwrap().free, free - structure.bytes());
     drop(structure);

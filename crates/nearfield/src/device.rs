@@ -25,6 +25,8 @@ pub struct DeviceStatus {
 pub struct GpuStatus {
     /// Its name.
     pub model: String,
+    /// Its identifier in the driver's tools, as in `GPU-8a56a4bc-...`.
+    pub uuid: String,
     /// Memory, \[bytes\].
     pub memory: u64,
     /// Compute capability, as in `9.0`.
@@ -65,6 +67,7 @@ fn status(info: &DeviceInfo) -> DeviceStatus {
         detail: detail.replace('\n', " "),
         gpu: Some(GpuStatus {
             model: info.name.clone(),
+            uuid: info.uuid.clone(),
             memory: info.memory,
             compute_capability,
             ray_tracing: info.ray_tracing.clone().ok(),
@@ -88,6 +91,21 @@ pub fn engine(device: Device) -> Result<Box<dyn Engine>> {
             Err(_) => Box::new(CpuEngine::new()),
         }),
     }
+}
+
+/// Name of the device that [`engine`] takes, and the identifier of a GPU.
+pub(crate) fn identity(device: Device) -> (String, Option<String>) {
+    let ordinal = match device {
+        Device::Cpu => None,
+        Device::Cuda(Some(ordinal)) => Some(ordinal as usize),
+        Device::Auto | Device::Cuda(None) => {
+            nearfield_cuda::devices().ok().and_then(|found| found.first().map(|info| info.ordinal))
+        }
+    };
+    let Some(ordinal) = ordinal else { return ("cpu".into(), None) };
+    let found = nearfield_cuda::devices().unwrap_or_default();
+    let uuid = found.iter().find(|info| info.ordinal == ordinal).map(|info| info.uuid.clone());
+    (format!("cuda:{ordinal}"), uuid)
 }
 
 /// The first GPU for which an engine can be made; the error of the very first where there is none.

@@ -25,10 +25,29 @@ pub enum Error {
     /// A picture.
     #[error(transparent)]
     Render(#[from] render::Error),
+    /// A file of constants of the cost model.
+    #[error("{}: {reason}; `nearfield bench auto` writes it anew, and without it Nearfield's own serve", path.display())]
+    Profile {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        reason: String,
+    },
     /// The device cannot be used here.
     #[error("device {device} is not available: {reason}")]
     DeviceUnavailable {
         /// The device asked for.
+        device: String,
+        /// What was looked for.
+        reason: String,
+    },
+    /// A rebuild policy that needs a meter of electrical energy.
+    #[error(
+        "maintenance gradient:joules needs a meter of electrical energy, and {device} has none: {reason}; \
+             gradient optimises time"
+    )]
+    NoMeter {
+        /// The device.
         device: String,
         /// What was looked for.
         reason: String,
@@ -66,6 +85,30 @@ pub enum Error {
         /// Why not.
         reason: String,
     },
+    /// A line of a file of results is no record of this version.
+    #[error("{}:{line}: no benchmark record of this version: {reason}; remove the line or the file", path.display())]
+    Results {
+        /// The file.
+        path: PathBuf,
+        /// Line number, from 1.
+        line: usize,
+        /// What is wrong.
+        reason: String,
+    },
+    /// There is nothing to plot.
+    #[error("{}: no results (*.jsonl) of nearfield bench here or in the folders below", directory.display())]
+    NoResults {
+        /// The directory.
+        directory: PathBuf,
+    },
+    /// A figure could not be drawn.
+    #[error("cannot draw {figure}: {reason}")]
+    Figure {
+        /// The figure.
+        figure: String,
+        /// What went wrong.
+        reason: String,
+    },
     /// The run was asked to stop.
     #[error("interrupted at step {step}; continue with --resume")]
     Interrupted {
@@ -90,7 +133,7 @@ impl Error {
     pub fn is_request(&self) -> bool {
         use nearfield_core::Error::{Device, NonFinite};
         match self {
-            Self::Interrupted { .. } | Self::Failed { .. } => false,
+            Self::Interrupted { .. } | Self::Failed { .. } | Self::Figure { .. } => false,
             // At step 0 nothing has run: the particles given overlap.
             Self::Core(NonFinite { step, .. }) => *step == 0,
             Self::Core(Device(_)) => false,

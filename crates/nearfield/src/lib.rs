@@ -8,6 +8,7 @@
 //! | make initial conditions | [`generate`] |
 //! | read and write files | [`io`] |
 //! | draw pictures | [`render`] |
+//! | repeat the papers' experiments | [`mod@bench`] |
 //!
 //! ```
 //! use nearfield::{Boundary, ListKind, ListRequest, NeighborSearch, SimBox};
@@ -20,14 +21,17 @@
 //! ```
 
 pub mod auto;
+pub mod bench;
 pub mod config;
 mod device;
+mod energy;
 mod error;
 pub mod generate;
 pub mod io;
 mod methods;
 pub mod observe;
 pub mod render;
+pub mod report;
 pub mod run;
 mod search;
 mod setup;

@@ -2,7 +2,8 @@
 
 use crate::{
     Device, Error, Result, Thermo,
-    auto::{self, Choice},
+    auto::{Choice, Tuner},
+    energy::{EnergyMeter, attach_meter},
     engine,
     observe::{Observer, Sample},
     run::Checkpoint,
@@ -34,7 +35,7 @@ impl SimulationBuilder {
         self
     }
 
-    /// The method; by default the fastest one, measured.
+    /// The method; by default the fastest one: predicted at first, then measured where a run is long enough.
     pub fn method(mut self, method: Method) -> Self {
         self.method = Some(method);
         self
@@ -77,21 +78,27 @@ impl SimulationBuilder {
         }
         self.dynamics.validate()?;
         let mut engine = engine(self.device)?;
-        let choice = match self.method {
-            Some(method) => auto::chosen(method),
-            None => auto::choose(&mut *engine, &self.system, &self.plan)?,
+        let (tuner, choice) = match self.method {
+            Some(method) => (None, Choice::of_user(method)),
+            None => {
+                let (tuner, choice) = Tuner::new(&mut *engine, &self.system, &self.plan)?;
+                (Some(tuner), choice)
+            }
         };
         let plan = Plan { method: choice.method, ..self.plan };
         engine.record_history(self.record_history);
         engine.load(&self.system, &plan)?;
+        attach_meter(&mut *engine, &plan, self.device)?;
         let tail =
             if self.tail_correction { self.system.tail_correction().unwrap_or_default() } else { Default::default() };
         Ok(Simulation {
             engine,
             system: self.system,
             dynamics: self.dynamics,
+            device: self.device,
             plan,
             choice,
+            tuner,
             tail,
             step: 0,
             in_step: true,
@@ -125,8 +132,11 @@ pub struct Simulation {
     system: System,
     in_step: bool,
     dynamics: Dynamics,
+    device: Device,
     plan: Plan,
     choice: Choice,
+    /// Where the choice of the method is ours.
+    tuner: Option<Tuner>,
     tail: TailCorrection,
     step: u64,
     thermo: Option<Thermo>,
@@ -169,7 +179,7 @@ impl Simulation {
     pub fn thermo(&mut self) -> Result<Thermo> {
         match self.thermo {
             Some(thermo) if thermo.step == self.step => Ok(thermo),
-            _ => self.advance(0),
+            _ => self.advance_tuned(0),
         }
     }
 
@@ -178,16 +188,53 @@ impl Simulation {
     /// # Errors
     /// Coincident particles, or a run that has blown up; the state is then not to be used.
     pub fn advance(&mut self, steps: u64) -> Result<Thermo> {
-        let totals = self.engine.advance(&self.dynamics, self.step, steps, Quantities::ALL)?;
-        self.moved(steps);
+        self.tune(steps)?;
+        self.advance_tuned(steps)
+    }
+
+    fn advance_tuned(&mut self, steps: u64) -> Result<Thermo> {
+        let totals = self.move_by(steps, Quantities::ALL)?;
         let thermo = self.thermo_of(&totals);
         self.thermo = Some(thermo);
         Ok(thermo)
     }
 
-    fn moved(&mut self, steps: u64) {
+    fn move_by(&mut self, steps: u64, quantities: Quantities) -> Result<Totals> {
+        let start = Instant::now();
+        let totals = self.engine.advance(&self.dynamics, self.step, steps, quantities)?;
+        if let Some(tuner) = &mut self.tuner {
+            tuner.record(steps, start.elapsed().as_secs_f64());
+        }
         self.step += steps;
         self.in_step &= steps == 0;
+        Ok(totals)
+    }
+
+    /// Tries other methods when that may pay in the steps to come.
+    fn tune(&mut self, remaining: u64) -> Result<()> {
+        let steps = (self.step, remaining);
+        if remaining == 0 || !self.tuner.as_ref().is_some_and(|tuner| tuner.is_due(&self.choice, steps)) {
+            return Ok(());
+        }
+        self.system()?;
+        let (order, report) = (self.engine.memory_order()?, self.report());
+        let tuner = self.tuner.as_mut().expect("there is one");
+        let method = self.choice.method;
+        if tuner.tune(&mut *self.engine, &self.system, &self.dynamics, &self.plan, steps, &mut self.choice) {
+            self.earlier = report;
+            self.plan.method = self.choice.method;
+            self.load()?;
+            if self.choice.method == method {
+                self.engine.set_memory_order(&order)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Puts the present state on the engine.
+    fn load(&mut self) -> Result<()> {
+        self.engine.load(&self.system, &self.plan)?;
+        attach_meter(&mut *self.engine, &self.plan, self.device)
     }
 
     fn thermo_of(&self, totals: &Totals) -> Thermo {
@@ -214,16 +261,16 @@ impl Simulation {
         }
         let mut chunk = 1;
         while self.step < last_step {
+            self.tune(last_step - self.step)?;
             let next_event = observers.iter().filter_map(|o| next_multiple(self.step, o.every())).min();
             let event = next_event.unwrap_or(last_step).min(last_step);
             let steps = chunk.min(event - self.step);
             let start = Instant::now();
             if self.step + steps == event {
-                self.advance(steps)?;
+                self.advance_tuned(steps)?;
                 self.observe(observers)?;
             } else {
-                self.engine.advance(&self.dynamics, self.step, steps, Quantities::FORCES)?;
-                self.moved(steps);
+                self.move_by(steps, Quantities::FORCES)?;
             }
             // As many steps as fit the interval, changing by a factor of two at most.
             let fit = steps as f64 * PROGRESS_INTERVAL.as_secs_f64() / start.elapsed().as_secs_f64().max(1e-9);
@@ -299,6 +346,14 @@ impl Simulation {
         self.engine.device()
     }
 
+    /// Reads the electrical energy of the device from now on.
+    ///
+    /// # Errors
+    /// Why it has no meter that may be read.
+    pub(crate) fn energy_meter(&self) -> Result<EnergyMeter, String> {
+        EnergyMeter::of(self.device)
+    }
+
     /// What was done so far.
     pub fn report(&self) -> Report {
         self.earlier.clone().followed_by(self.engine.report())
@@ -320,7 +375,7 @@ impl Simulation {
     pub fn restore(&mut self, checkpoint: &Checkpoint) -> Result<()> {
         checkpoint.apply(&mut self.system)?;
         self.earlier = self.report();
-        self.engine.load(&self.system, &self.plan)?;
+        self.load()?;
         self.engine.set_memory_order(&checkpoint.order)?;
         self.step = checkpoint.step;
         self.in_step = true;

@@ -54,7 +54,7 @@ mass = 1.0
 [method]
 name = "auto"
 device = "auto"                   # auto | cpu | cuda | cuda:N
-maintenance = "gradient"          # every | fixed:K | average | gradient | displacement
+maintenance = "gradient"          # every | fixed:K | average | gradient | gradient:joules | displacement
 images = "auto"                   # auto | gamma | instances | ghosts
 order = "morton"                  # none | morton | cell
 skin = 0.3                        # list methods
@@ -159,7 +159,7 @@ fn a_wrong_choice_names_the_choices_and_the_nearest() {
         ("[method]\ndevice = \"gpu\"", "line 2: method.device = \"gpu\": expected auto | cpu | cuda | cuda:N"),
         (
             "[method]\nmaintenance = \"fixed:0\"",
-            "line 2: method.maintenance = \"fixed:0\": expected every | fixed:K | average | gradient | displacement; \
+            "line 2: method.maintenance = \"fixed:0\": expected every | fixed:K | average | gradient | gradient:joules | displacement; \
              did you mean \"fixed:K\"?",
         ),
         (

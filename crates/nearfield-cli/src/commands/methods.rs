@@ -27,6 +27,8 @@ pub fn run(json: bool) -> Result<(), Failure> {
             m.method, m.device, m.sentence, m.paper_name
         ));
     }
-    print_line("auto measures the methods that support the system and takes the fastest.");
+    print_line(
+        "auto takes the one predicted to be the fastest, and in a run that is long enough tries the best few of them.",
+    );
     Ok(())
 }

@@ -1,10 +1,12 @@
 //! One file a command.
 
+pub mod bench;
 pub mod devices;
 pub mod forces;
 pub mod generate;
 pub mod methods;
 pub mod neighbors;
+pub mod plot;
 pub mod render;
 pub mod run;
 

@@ -30,8 +30,11 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     }
     print_note(&format!("{} particles on {}", simulation.n_particles(), simulation.device()));
     note_radii(simulation.radii());
-    let choice = simulation.choice();
-    print_note(&format!("method {}: {}", choice.method, choice.reason));
+    let first = simulation.choice().clone();
+    print_note(&match arguments.explain {
+        true => first.explain(),
+        false => format!("method {}: {}", first.method, first.reason),
+    });
     print_note(&format!("steps {} to {last_step}, output in {}", simulation.step(), output.display()));
     let bar = RunBar::new(simulation.step(), last_step, simulation.n_particles());
     let stop = stop_on_interrupt();
@@ -41,6 +44,11 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     });
     bar.clear();
     let record = outcome?;
+    if arguments.explain && record.method != first {
+        print_note(&record.method.explain());
+    } else if record.method.reason != first.reason {
+        print_note(&format!("method {}: {}", record.method.method, record.method.reason));
+    }
     summarise(&record, &output);
     Ok(())
 }

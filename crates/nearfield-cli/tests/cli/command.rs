@@ -47,6 +47,8 @@ impl Folder {
     pub fn command(&self, arguments: &[impl AsRef<OsStr>]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_nearfield"));
         command.args(arguments).current_dir(self.0.path()).env("RAYON_NUM_THREADS", "2").env_remove("RUST_BACKTRACE");
+        // Not the user's own; there is none where a test writes none.
+        command.env("NEARFIELD_PROFILE", "profile.toml");
         command
     }
 

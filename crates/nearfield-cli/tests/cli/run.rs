@@ -50,11 +50,28 @@ fn a_run_writes_what_the_contract_says() {
     for key in ["versions", "device", "method", "plan", "wall_seconds", "energy_joules", "thermo"] {
         assert!(record.get(key).is_some(), "run.json has no {key}: {record}");
     }
-    assert!(record["method"]["reason"].as_str().unwrap().contains("fastest of those measured"), "{record}");
+    assert!(record["method"]["reason"].as_str().unwrap().contains("predicted to be the fastest"), "{record}");
     assert_eq!(folder.read("out/msd.csv").lines().count(), 5);
     assert_eq!(folder.read("out/rdf.csv").lines().count(), 201);
     let files = fs::read_dir(folder.path("out")).unwrap().count();
     assert_eq!(files, 6, "nothing temporary is left");
+}
+
+#[test]
+fn the_profile_of_the_machine_decides_and_explain_shows_what_it_says() {
+    let folder = Folder::new();
+    let profile = |method: &str, pair: f64| {
+        let cost = |pair: f64| format!("{{ step = 1e-6, particle = 1e-9, pair = {pair:e} }}");
+        format!("[[device]]\nname = \"cpu\"\n[device.method]\ncell = {}\n{method} = {}\n", cost(1e-9), cost(pair))
+    };
+    folder.write("melt.toml", MELT).write("profile.toml", profile("rt-boxes", 1e-10));
+    let outcome = folder.succeed("run melt.toml --device cpu --steps 5 --explain");
+    for word in ["method rt-boxes: predicted to be the fastest", "500 particles, one radius", "predicted ms", "cell"] {
+        assert!(outcome.stderr.contains(word), "expected `{word}` in {}", outcome.stderr);
+    }
+    assert_eq!(folder.json("out/run.json")["method"]["candidates"].as_array().unwrap().len(), 2);
+    folder.write("profile.toml", profile("octree", 1e-10));
+    folder.refuse("run melt.toml --device cpu --steps 5", &["profile.toml", "octree", "nearfield bench auto"]);
 }
 
 #[test]

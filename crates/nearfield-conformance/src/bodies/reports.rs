@@ -1,7 +1,11 @@
 //! What an engine says it did.
 
 use crate::{Factory, cases, plans};
-use nearfield_core::{Dynamics, Engine, Maintenance, Method, Plan, Quantities, System};
+use nearfield_core::{Dynamics, Engine, Maintenance, Method, Plan, Quantities, System, maintenance::EnergyCounter};
+use std::sync::{
+    Arc,
+    atomic::{AtomicU32, Ordering},
+};
 
 const STEPS: u64 = 23;
 
@@ -21,8 +25,8 @@ fn upkeep_each_step() -> Vec<Plan> {
 
 /// Whatever the policy.
 pub fn a_bvh_is_built_or_refitted_at_each_evaluation(factory: Factory) {
-    let policies = [Maintenance::Every, Maintenance::Fixed(3), Maintenance::Average, Maintenance::Gradient];
-    for maintenance in policies {
+    let policies = [Maintenance::Every, Maintenance::Fixed(3), Maintenance::Average];
+    for maintenance in policies.into_iter().chain([Maintenance::Gradient, Maintenance::GradientJoules]) {
         let plans: Vec<_> = upkeep_each_step().into_iter().map(|plan| Plan { maintenance, ..plan }).collect();
         plans::run(&mut *factory(), &liquid(), &plans, |engine, plan| {
             advance(engine, 0, STEPS);
@@ -67,6 +71,30 @@ pub fn a_skin_saves_list_builds(factory: Factory) {
             assert_eq!(report.dangerous_builds, 0, "{plan:?}");
         });
     }
+}
+
+/// A meter of constant power.
+struct Readings(Arc<AtomicU32>);
+
+impl EnergyCounter for Readings {
+    fn read(&mut self) -> (f64, f64) {
+        let readings = f64::from(self.0.fetch_add(1, Ordering::Relaxed));
+        (100.0 * readings, readings)
+    }
+}
+
+/// And the run is as with any other policy.
+pub fn a_policy_that_looks_at_energy_reads_the_meter(factory: Factory) {
+    let maintenance = Maintenance::GradientJoules;
+    let plans: Vec<_> = upkeep_each_step().into_iter().map(|plan| Plan { maintenance, ..plan }).collect();
+    plans::run(&mut *factory(), &liquid(), &plans, |engine, plan| {
+        let readings = Arc::new(AtomicU32::new(0));
+        engine.attach_meter(Box::new(Readings(readings.clone())));
+        advance(engine, 0, STEPS);
+        assert!(readings.load(Ordering::Relaxed) > 0, "{plan:?}");
+        let report = engine.report();
+        assert_eq!(report.builds + report.refits, STEPS + 1, "{plan:?}: {report:?}");
+    });
 }
 
 /// Recording can be switched on and off at any time.

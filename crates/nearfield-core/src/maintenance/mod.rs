@@ -4,20 +4,24 @@
 //! Engines ask the policy before each evaluation and tell it afterwards what the step cost.
 
 mod average;
+mod build_power;
 mod displacement;
 mod every;
 mod fixed;
 mod gradient;
+mod gradient_joules;
 mod robust;
 
 pub use average::Average;
+pub use build_power::EnergyCounter;
 pub use displacement::Displacement;
 pub use every::Every;
 pub use fixed::Fixed;
 pub use gradient::{Gradient, optimal_updates, optimal_updates_exact};
+pub use gradient_joules::GradientJoules;
 
 use crate::engine::StepCost;
-use serde::{Serialize, Serializer};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 use std::{fmt, str::FromStr};
 
 /// What to do with the structure at the next evaluation.
@@ -54,6 +58,11 @@ pub trait Policy: Send {
 
     /// Reports what the evaluation cost, the forced and first builds included.
     fn record(&mut self, cost: StepCost);
+
+    /// Gives a policy that looks at energy something to read it from; the others have no use for it.
+    fn attach(&mut self, counter: Box<dyn EnergyCounter>) {
+        drop(counter);
+    }
 }
 
 /// The choice of a policy, as configured.
@@ -67,6 +76,8 @@ pub enum Maintenance {
     Average,
     /// Paper A's optimiser.
     Gradient,
+    /// Paper A's optimiser, of energy instead of time.
+    GradientJoules,
     /// Rebuild when particles have moved far (tutorial C).
     Displacement,
 }
@@ -79,6 +90,7 @@ impl Maintenance {
             Self::Fixed(steps) => Box::new(Fixed::new(steps)),
             Self::Average => Box::new(Average::default()),
             Self::Gradient => Box::new(Gradient::default()),
+            Self::GradientJoules => Box::new(GradientJoules::default()),
             Self::Displacement => Box::new(Displacement::default()),
         }
     }
@@ -91,6 +103,7 @@ impl fmt::Display for Maintenance {
             Self::Fixed(steps) => f.pad(&format!("fixed:{steps}")),
             Self::Average => f.pad("average"),
             Self::Gradient => f.pad("gradient"),
+            Self::GradientJoules => f.pad("gradient:joules"),
             Self::Displacement => f.pad("displacement"),
         }
     }
@@ -104,12 +117,14 @@ impl FromStr for Maintenance {
             "every" => Ok(Self::Every),
             "average" => Ok(Self::Average),
             "gradient" => Ok(Self::Gradient),
+            "gradient:joules" => Ok(Self::GradientJoules),
             "displacement" => Ok(Self::Displacement),
             _ => match text.strip_prefix("fixed:").map(str::parse) {
                 Some(Ok(steps)) if steps > 0 => Ok(Self::Fixed(steps)),
                 Some(_) => Err(format!("\"{text}\": fixed:K takes a whole number K of steps, at least 1")),
                 None => Err(format!(
-                    "unknown maintenance \"{text}\"; there are every, fixed:K, average, gradient, displacement"
+                    "unknown maintenance \"{text}\"; there are every, fixed:K, average, gradient, gradient:joules, \
+                     displacement"
                 )),
             },
         }
@@ -119,5 +134,11 @@ impl FromStr for Maintenance {
 impl Serialize for Maintenance {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)
+    }
+}
+
+impl<'de> Deserialize<'de> for Maintenance {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        String::deserialize(deserializer)?.parse().map_err(de::Error::custom)
     }
 }

@@ -4,7 +4,7 @@ use crate::{Brute, Bvh, Grid, Input, Probe, Refit, Structure};
 use nearfield_core::{
     Method, Plan, Report,
     engine::StepCost,
-    maintenance::{Action, Motion, Policy},
+    maintenance::{Action, EnergyCounter, Motion, Policy},
 };
 use std::time::Instant;
 
@@ -82,6 +82,11 @@ pub(super) struct Upkeep {
 impl Upkeep {
     pub fn new(plan: &Plan) -> Self {
         Self { index: Index::new(plan), policy: plan.maintenance.policy(), built: false, last: None }
+    }
+
+    /// Gives the policy something to read energy from.
+    pub fn attach(&mut self, counter: Box<dyn EnergyCounter>) {
+        self.policy.attach(counter);
     }
 
     /// Whether [`Upkeep::next`] wants the motion since the last build.

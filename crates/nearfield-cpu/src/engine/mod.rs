@@ -16,7 +16,7 @@ use crate::InputRadii;
 use evaluate::Loaded;
 use nearfield_core::{
     Dynamics, Engine, Error, ListRequest, NeighborList, Particles, PerParticle, Plan, Quantities, Radii, Report,
-    Result, System, Totals, engine::MemoryOrder,
+    Result, System, Totals, engine::MemoryOrder, maintenance::EnergyCounter,
 };
 
 /// The engine that runs on the threads of the CPU (the current rayon pool).
@@ -149,6 +149,12 @@ impl Engine for CpuEngine {
         self.record_history = on;
         if let Some(loaded) = &mut self.loaded {
             loaded.record_history = on;
+        }
+    }
+
+    fn attach_meter(&mut self, counter: Box<dyn EnergyCounter>) {
+        if let Some(loaded) = &mut self.loaded {
+            loaded.upkeep.attach(counter);
         }
     }
 }

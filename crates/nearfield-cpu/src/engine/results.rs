@@ -133,13 +133,9 @@ impl Loaded {
     }
 
     pub fn report(&self) -> Report {
-        let bytes = self.state.bytes()
-            + self.upkeep.index.bytes()
-            + self.results.bytes()
-            + self.scatter.bytes()
-            + self.reference.bytes()
-            + self.list.bytes()
-            + self.clusters.clusters.bytes();
-        Report { bytes: bytes as u64, ..self.report.clone() }
+        let structure = self.upkeep.index.bytes() + self.list.bytes() + self.clusters.clusters.bytes();
+        let bytes =
+            structure + self.state.bytes() + self.results.bytes() + self.scatter.bytes() + self.reference.bytes();
+        Report { bytes: bytes as u64, structure_bytes: structure as u64, ..self.report.clone() }
     }
 }

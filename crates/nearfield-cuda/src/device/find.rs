@@ -15,6 +15,8 @@ pub struct DeviceInfo {
     pub ordinal: usize,
     /// Its name.
     pub name: String,
+    /// Its identifier in the driver's other libraries, as in `GPU-8a56a4bc-...`.
+    pub uuid: String,
     /// Memory, \[bytes\].
     pub memory: u64,
     /// Compute capability.
@@ -49,9 +51,23 @@ fn info(ordinal: usize) -> Result<DeviceInfo, Unavailable> {
     let driver = |error: DriverError| Unavailable::Driver(describe(error));
     let (name, memory) = (context.name().map_err(driver)?, context.total_mem().map_err(driver)? as u64);
     let compute_capability = context.compute_capability().map_err(driver)?;
+    let uuid = hyphenated(context.uuid().map_err(driver)?);
     let device = CudaDevice::on(context).map_err(|error| Unavailable::Driver(error.to_string()))?;
     let ray_tracing = device.ray_tracing().map(|tracing| tracing.describe());
-    Ok(DeviceInfo { ordinal, name, memory, compute_capability, ray_tracing })
+    Ok(DeviceInfo { ordinal, name, uuid, memory, compute_capability, ray_tracing })
+}
+
+/// As NVML and nvidia-smi write it.
+fn hyphenated(uuid: sys::CUuuid) -> String {
+    let mut text = String::from("GPU");
+    for (at, byte) in uuid.bytes.iter().enumerate() {
+        if matches!(at, 0 | 4 | 6 | 8 | 10) {
+            text.push('-');
+        }
+        // The element type is the platform's char.
+        text += &format!("{:02x}", *byte as u8);
+    }
+    text
 }
 
 /// A context on a device whose driver and compute capability suffice.

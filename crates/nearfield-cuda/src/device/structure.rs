@@ -3,25 +3,36 @@
 use super::{CudaDevice, optix::failed};
 use crate::{
     Buffer, Gpu,
-    gpu::{Aabb, AccelerationStructure, Bodies},
+    gpu::{Aabb, AccelerationStructure, Bodies, Preference},
 };
 use nearfield_core::Result;
 use nearfield_kernels::Float4;
 use optix_driver::{
-    Aabbs, AccelOptions, AnyHit, BuildInput, DeviceContext, DeviceSpan, Instance, Instances, Preference, SphereRadii,
-    Spheres, TraversableHandle, Triangles,
+    Aabbs, AccelOptions, AnyHit, BuildInput, DeviceContext, DeviceSpan, Instance, Instances, SphereRadii, Spheres,
+    TraversableHandle, Triangles,
 };
 use std::sync::Arc;
 
-/// A structure is traced far more often than it is built, and refitted in between.
+/// Structures are refitted between builds. Those over spheres have the options that their built-in program was made for.
 pub(super) const OPTIONS: AccelOptions =
-    AccelOptions { allow_update: true, allow_compaction: false, preference: Preference::FastTrace };
+    AccelOptions { allow_update: true, allow_compaction: false, preference: optix_driver::Preference::FastTrace };
+
+fn options(bodies: &Bodies, preference: Preference) -> AccelOptions {
+    match (bodies, preference) {
+        (Bodies::Boxes(_) | Bodies::Triangles(_), Preference::Builds) => {
+            AccelOptions { preference: optix_driver::Preference::FastBuild, ..OPTIONS }
+        }
+        _ => OPTIONS,
+    }
+}
 
 /// A structure over bodies or instances.
 pub(super) struct OptixStructure {
     context: Arc<DeviceContext>,
     device: Arc<CudaDevice>,
     handle: u64,
+    /// Of the last build, and so of refits.
+    options: AccelOptions,
     output: Buffer<u8>,
     scratch: Buffer<u8>,
     /// Records of the instances, where it is over instances, on the host and on the device.
@@ -36,6 +47,7 @@ impl OptixStructure {
             context: context.clone(),
             device: device.clone(),
             handle: 0,
+            options: OPTIONS,
             output: Buffer::new(&gpu, "an acceleration structure"),
             scratch: Buffer::new(&gpu, "scratch of an acceleration structure"),
             instances: Vec::new(),
@@ -48,13 +60,13 @@ impl OptixStructure {
     unsafe fn build_input(&mut self, input: BuildInput) -> Result<()> {
         let stream = self.device.bind()?;
         let building = |error| failed("building an acceleration structure", error);
-        let sizes = self.context.accel_sizes(OPTIONS, &[input]).map_err(building)?;
+        let sizes = self.context.accel_sizes(self.options, &[input]).map_err(building)?;
         self.output.resize(sizes.output)?;
         self.scratch.resize(sizes.temp.max(sizes.temp_update))?;
         let (scratch, output) = (span(&self.scratch), span(&self.output));
         // SAFETY: the buffers are as large as was asked for, aligned to 256 bytes and kept while the handle is; the
         // caller vouches for the input; the stream is the device's and captures nothing.
-        let handle = unsafe { self.context.accel_build(stream.cast(), OPTIONS, &[input], scratch, output, None) };
+        let handle = unsafe { self.context.accel_build(stream.cast(), self.options, &[input], scratch, output, None) };
         self.handle = handle.map_err(building)?.0;
         Ok(())
     }
@@ -65,14 +77,15 @@ impl OptixStructure {
         let stream = self.device.bind()?;
         let (scratch, output) = (span(&self.scratch), span(&self.output));
         // SAFETY: as in `build_input`, which made room for updates too.
-        let handle = unsafe { self.context.accel_update(stream.cast(), OPTIONS, &[input], scratch, output) };
+        let handle = unsafe { self.context.accel_update(stream.cast(), self.options, &[input], scratch, output) };
         self.handle = handle.map_err(|error| failed("refitting an acceleration structure", error))?.0;
         Ok(())
     }
 }
 
 impl AccelerationStructure for OptixStructure {
-    unsafe fn build(&mut self, bodies: Bodies, n: u32) -> Result<()> {
+    unsafe fn build(&mut self, bodies: Bodies, n: u32, preference: Preference) -> Result<()> {
+        self.options = options(&bodies, preference);
         // SAFETY: the caller vouches for the bodies.
         unsafe { self.build_input(input(bodies, n)) }
     }

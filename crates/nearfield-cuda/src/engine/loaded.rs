@@ -79,13 +79,14 @@ impl Loaded {
     }
 
     pub fn report(&self) -> Report {
-        let bytes = self.state.bytes()
+        let structure_bytes = self.structure.bytes();
+        let bytes = structure_bytes
+            + self.state.bytes()
             + self.results.bytes()
             + self.next_position.bytes()
             + self.physics.bytes()
             + self.totalizer.bytes()
-            + self.structure.bytes()
             + self.reference.bytes();
-        Report { bytes, ..self.report.clone() }
+        Report { bytes, structure_bytes, ..self.report.clone() }
     }
 }

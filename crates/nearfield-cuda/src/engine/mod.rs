@@ -20,7 +20,7 @@ use crate::{Buffer, CudaDevice, DeviceList, Gpu, Unavailable, Variant};
 use loaded::Loaded;
 use nearfield_core::{
     Dynamics, Engine, Error, ListRequest, NeighborList, Particles, PerParticle, Plan, Quantities, Report, Result,
-    System, Totals, engine::MemoryOrder,
+    System, Totals, engine::MemoryOrder, maintenance::EnergyCounter,
 };
 use std::sync::Arc;
 
@@ -155,6 +155,12 @@ impl Engine for CudaEngine {
         self.record_history = on;
         if let Some(loaded) = &mut self.loaded {
             loaded.record_history = on;
+        }
+    }
+
+    fn attach_meter(&mut self, counter: Box<dyn EnergyCounter>) {
+        if let Some(loaded) = &mut self.loaded {
+            loaded.policy.attach(counter);
         }
     }
 }

@@ -76,6 +76,12 @@ fn main() {
         plans::each_structure(),
         neighbors::pairs_are_those_of_the_cpu,
     );
+    let rays = plans::each_structure().into_iter().filter(|plan| plan.method.uses_bvh());
+    trials.add_for(
+        "neighbors::a_million_particles_have_the_pairs_that_cells_find",
+        rays.collect(),
+        neighbors::a_million_particles_have_the_pairs_that_cells_find,
+    );
     trials.add_for(
         "melt::energy_and_momentum_are_conserved",
         plans::each_method(),

@@ -59,3 +59,35 @@ pub fn pairs_are_those_of_the_cpu(plan: &Plan) {
         assert!(counted.neighbors == counts && totals.pairs == expected.len() as u64, "{plan:?}, {boundary:?}");
     }
 }
+
+/// Uniform particles and points of a sphere's surface, a million of each, with the pairs that `cell` finds in them.
+static MILLIONS: LazyLock<Vec<(System, Vec<Pair>)>> = LazyLock::new(|| {
+    const MILLION: usize = 1_000_000;
+    let cube = cases::cube(100.0, [Periodic; 3]);
+    let uniform = cases::soft(cube, cases::uniform(MILLION, &cube, 4), Radii::Uniform(1.2));
+    let open = cases::cube(2.0, [Open; 3]);
+    let onto_sphere = |x: [f32; 3]| {
+        let from_center = x.map(|x| x - 1.0);
+        let length = from_center.iter().map(|x| x * x).sum::<f32>().sqrt().max(1e-6);
+        from_center.map(|x| 1.0 + 0.999 * x / length)
+    };
+    let points = cases::uniform(MILLION, &open, 5).into_iter().map(onto_sphere).collect();
+    let sphere = cases::soft(open, points, Radii::Uniform(0.006));
+    let with_pairs = |system: System| {
+        let mut engine = super::engine();
+        engine.load(&system, &Plan::new(Method::Cell)).expect("the system fits");
+        let pairs = pairs(&mut engine);
+        assert!(pairs.len() > 4 * MILLION, "{} pairs", pairs.len());
+        (system, pairs)
+    };
+    [uniform, sphere].map(with_pairs).into()
+});
+
+/// Indices and images, of a million particles.
+pub fn a_million_particles_have_the_pairs_that_cells_find(plan: &Plan) {
+    for (system, expected) in MILLIONS.iter() {
+        let mut engine = super::engine();
+        engine.load(system, plan).expect("the system fits");
+        assert!(pairs(&mut engine) == *expected, "{plan:?}");
+    }
+}

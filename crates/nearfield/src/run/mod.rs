@@ -5,7 +5,6 @@
 
 mod checkpoint;
 mod directory;
-mod energy;
 mod record;
 
 pub use checkpoint::Checkpoint;

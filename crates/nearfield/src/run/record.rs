@@ -1,7 +1,6 @@
 //! run.json: what ran, how, and how it went.
 
-use super::energy::EnergyMeter;
-use crate::{Result, Simulation, Thermo, auto::Choice, config::Config, io::atomic_write};
+use crate::{Result, Simulation, Thermo, auto::Choice, config::Config, energy::EnergyMeter, io::atomic_write};
 use nearfield_core::{Plan, Report};
 use serde::Serialize;
 use std::{env, path::Path, time::Instant};
@@ -30,7 +29,7 @@ pub struct Versions {
 }
 
 /// The content of run.json.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Debug, Serialize)]
 pub struct Record {
     /// What ran.
     pub versions: Versions,
@@ -56,9 +55,11 @@ pub struct Record {
     pub steps_per_second: f64,
     /// Particles times steps over wall time.
     pub particle_steps_per_second: f64,
-    /// Energy the processors used since the (resumed) start, \[J\], other programs included; absent where there is no
-    /// meter that may be read.
+    /// Energy the device used since the (resumed) start, \[J\], other programs included; absent where there is no meter
+    /// that may be read.
     pub energy_joules: Option<f64>,
+    /// What the energy was read from, or why there is none.
+    pub energy_meter: String,
     /// The last thermodynamic state.
     pub thermo: Option<Thermo>,
     /// Rebuilds, refits, lists and the times they took.
@@ -76,6 +77,10 @@ pub struct Record {
 
 impl Record {
     pub(super) fn new(config: &Config, simulation: &Simulation) -> Self {
+        let (energy_meter, meter) = match simulation.energy_meter() {
+            Ok(meter) => (meter.name().to_owned(), Some(meter)),
+            Err(reason) => (format!("none: {reason}"), None),
+        };
         Self {
             versions: Versions {
                 nearfield: env!("CARGO_PKG_VERSION"),
@@ -93,11 +98,12 @@ impl Record {
             steps_per_second: 0.0,
             particle_steps_per_second: 0.0,
             energy_joules: None,
+            energy_meter,
             thermo: None,
             report: Report::default(),
             config: config.clone(),
             start: Instant::now(),
-            meter: EnergyMeter::find(),
+            meter,
             earlier: Report::default(),
         }
     }
@@ -117,6 +123,8 @@ impl Record {
 
     pub(super) fn update(&mut self, simulation: &Simulation, status: Status) {
         self.status = status;
+        self.method = simulation.choice().clone();
+        self.plan = *simulation.plan();
         self.steps = simulation.step();
         self.read_meter();
         self.wall_seconds = self.start.elapsed().as_secs_f64();

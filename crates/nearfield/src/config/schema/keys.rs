@@ -117,7 +117,7 @@ const METHOD: &[Key] = &[
     ),
     key(
         "maintenance",
-        Accepts::Names(|| vec!["every", "fixed:K", "average", "gradient", "displacement"]),
+        Accepts::Names(|| vec!["every", "fixed:K", "average", "gradient", "gradient:joules", "displacement"]),
         "when a BVH is rebuilt instead of refitted",
     ),
     key("images", Accepts::Names(|| or_auto(Images::ALL.iter().map(|i| i.name()))), "periodic images of BVH methods"),

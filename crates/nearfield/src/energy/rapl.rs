@@ -1,4 +1,4 @@
-//! Electrical energy, where the machine has a meter that may be read.
+//! The counters of processor packages.
 
 use std::{
     fs,
@@ -11,7 +11,7 @@ const POWERCAP: &str = "/sys/class/powercap";
 
 /// Adds up what the packages of the machine use, other programs included.
 #[derive(Clone, Debug)]
-pub(super) struct EnergyMeter {
+pub(super) struct Rapl {
     counters: Vec<Counter>,
     microjoules: u64,
 }
@@ -24,7 +24,7 @@ struct Counter {
     last: u64,
 }
 
-impl EnergyMeter {
+impl Rapl {
     /// The meter of this machine, if there is one.
     pub fn find() -> Option<Self> {
         Self::below(Path::new(POWERCAP))
@@ -75,13 +75,13 @@ mod tests {
             fs::create_dir_all(folder.path().join(zone)).unwrap();
             fs::write(folder.path().join(zone).join(file), text).unwrap();
         };
-        assert!(EnergyMeter::below(folder.path()).is_none());
+        assert!(Rapl::below(folder.path()).is_none());
         for (zone, name, energy) in [("a", "package-0\n", "900"), ("b", "package-1\n", "50"), ("a:0", "core\n", "10")] {
             set(zone, "name", name);
             set(zone, "energy_uj", energy);
             set(zone, "max_energy_range_uj", "1000");
         }
-        let mut meter = EnergyMeter::below(folder.path()).unwrap();
+        let mut meter = Rapl::below(folder.path()).unwrap();
         assert_eq!(meter.joules(), 0.0);
         set("a", "energy_uj", "100");
         set("b", "energy_uj", "80");
