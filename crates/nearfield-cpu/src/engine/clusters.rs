@@ -220,9 +220,8 @@ impl Mover for Verlet<'_> {
         {
             let mut next = (*position, [*vx, *vy, *vz]);
             let mut inside = true;
-            for axis in 0..3 {
-                let (x, v) = (&mut next.0[axis], &mut next.1[axis]);
-                inside &= self.integrator.step_many(axis, x, v, &force[axis], kind);
+            for (axis, force) in force.iter().enumerate() {
+                inside &= self.integrator.step_many(axis, &mut next.0[axis], &mut next.1[axis], force, kind);
             }
             if inside {
                 *position = next.0;
@@ -251,13 +250,13 @@ impl Verlet<'_> {
             self.integrator.start(&mut p, force, kind, id, self.step + 1);
             self.positions.see(p.position, id);
             *image = p.image;
-            for axis in 0..3 {
+            for (axis, force) in force.into_iter().enumerate() {
                 position[axis][lane] = p.position[axis];
                 // SAFETY: as in `advance`.
                 unsafe {
                     self.position[axis].write(i, p.position[axis]);
                     self.velocity[axis].write(i, p.velocity[axis]);
-                    self.force[axis].write(i, force[axis]);
+                    self.force[axis].write(i, force);
                 }
             }
         }
