@@ -1,10 +1,10 @@
-//! Where the time of `cluster` goes: whole steps of the Lennard-Jones melt by phase, and evaluations where particles have
-//! very many neighbours or next to none.
+//! Where the time of `cluster` goes: whole steps of the Lennard-Jones melt by phase, and evaluations where particles
+//! have very many neighbours or next to none.
 //!
 //! `cargo bench -p nearfield-cpu --bench clusters [-- [METHOD:]N[:SKIN|:rR] ...]`. One line of JSON for each case.
 //! Threads: RAYON_NUM_THREADS.
-//! - The melt: density 0.8442, cutoff 2.5, dt 0.005, after 200 steps of melting from T = 1.44: ns per particle and step of
-//!   the phases that the engine reports, and of the whole; medians over batches of 40 steps or more.
+//! - The melt: density 0.8442, cutoff 2.5, dt 0.005, after 200 steps of melting from T = 1.44: ns per particle and step
+//!   of the phases that the engine reports, and of the whole; medians over batches of 40 steps or more.
 //! - `rR`: paper A's lattice, spacing 10 with walls, and cutoff R: the median of three evaluations of forces, structure
 //!   included.
 

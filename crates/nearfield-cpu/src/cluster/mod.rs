@@ -7,10 +7,10 @@
 //! doi:10.1016/j.cpc.2013.06.003, with the layout that was fastest on Zen 4).
 //!
 //! The *outer* list holds everything within the cutoff plus a skin and serves until some particle has moved half of
-//! the skin from where it was expected ([`motion`]). The *inner* list is the part of it that is near enough for the next
-//! few evaluations: each particle has a budget of displacement ([`Blocks::plan_motion`]), two particles are kept while
-//! their distance exceeds the cutoff by less than both budgets, and the list is pruned anew when some particle has used
-//! its budget up. Displacements are measured before each use, so no pair is missed.
+//! the skin from where it was expected ([`motion`]). The *inner* list is the part of it that is near enough for the
+//! next few evaluations: each particle has a budget of displacement ([`Blocks::plan_motion`]), two particles are kept
+//! while their distance exceeds the cutoff by less than both budgets, and the list is pruned anew when some particle
+//! has used its budget up. Displacements are measured before each use, so no pair is missed.
 //!
 //! Where particles have very many neighbours no list is stored: the pairs of a few clusters at a time are listed and
 //! computed while they are in the cache ([`Clusters::build_without_list`]).
@@ -117,8 +117,8 @@ impl Clusters {
     }
 
     /// Forces, and energies where `out` has room for them. Sums of `exact` do not depend on the order of terms. With a
-    /// `grid` pairs are found in it, batch by batch, after [`Clusters::build_without_list`]. False when some force is not
-    /// finite.
+    /// `grid` pairs are found in it, batch by batch, after [`Clusters::build_without_list`]. False when some force is
+    /// not finite.
     pub fn evaluate(&mut self, physics: &Physics, grid: Option<&Grid>, exact: bool, out: Output) -> bool {
         if exact || !has_vector_law(physics) {
             exact::evaluate(physics, &self.blocks, &mut self.list, grid, &mut self.sums, out)

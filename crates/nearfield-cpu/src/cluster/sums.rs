@@ -74,7 +74,8 @@ fn clear<T: Copy + Default>(values: &mut Vec<T>, touched: &[u32], n: usize) {
 }
 
 impl PageSums {
-    /// Finds which pages tasks touch: those of their lists, or with a `grid`, for there is no list then, those in range.
+    /// Finds which pages tasks touch: those of their lists, or with a `grid`, for there is no list then, those in
+    /// range.
     pub fn lay_out(&mut self, list: &mut PairList, blocks: &Blocks, grid: Option<&Grid>) {
         self.n_blocks = blocks.len();
         let n_pages = blocks.n_pages();

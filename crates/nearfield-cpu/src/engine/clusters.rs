@@ -16,8 +16,8 @@ use std::{
     time::Instant,
 };
 
-/// Most bytes of a list for each particle, worth some thousand pairs in lanes: it costs more to read larger ones than to
-/// find the pairs of a batch of clusters again.
+/// Most bytes of a list for each particle, worth some thousand pairs in lanes: it costs more to read larger ones than
+/// to find the pairs of a batch of clusters again.
 const MOST_BYTES: u64 = 1024;
 
 /// The pair list and how it is kept.
@@ -59,8 +59,8 @@ impl StoredClusters {
         }
     }
 
-    /// Has list and forces made anew before the next step. Another engine that takes the particles over has no list: the
-    /// order of sums, which is that of the list, would tell it from this one.
+    /// Has list and forces made anew before the next step. Another engine that takes the particles over has no list:
+    /// the order of sums, which is that of the list, would tell it from this one.
     pub fn end(&self) {
         self.ended.store(true, Relaxed);
     }

@@ -73,8 +73,8 @@ impl Integrator {
         self.langevin.is_none() && self.speed_limit == f32::INFINITY
     }
 
-    /// First half kick and drift of neighbouring particles. Without types (`kind`) there is only one. Calls `settle` for
-    /// groups of particles of which some may have left the box or are not finite.
+    /// First half kick and drift of neighbouring particles. Without types (`kind`) there is only one. Calls `settle`
+    /// for groups of particles of which some may have left the box or are not finite.
     #[inline(always)]
     pub fn start_many(
         &self,
@@ -107,8 +107,8 @@ impl Integrator {
         }
     }
 
-    /// Second half kick of a step, then first half kick and drift of the next, of neighbouring particles along one axis.
-    /// Whether all are finite and in the box.
+    /// Second half kick of a step, then first half kick and drift of the next, of neighbouring particles along one
+    /// axis. Whether all are finite and in the box.
     #[inline(always)]
     pub fn step_many<const N: usize>(
         &self,
