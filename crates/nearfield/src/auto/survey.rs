@@ -32,7 +32,8 @@ impl Survey {
     ///
     /// ```
     /// use nearfield::{Boundary, Radii, System, Interaction, auto::Survey, generate};
-    /// let spec = generate::Generate { n: 4000, density: Some(1.0), ..Default::default() };
+    /// let positions = generate::Positions::Disordered;
+    /// let spec = generate::Generate { positions, n: 4000, density: Some(1.0), ..Default::default() };
     /// let start = spec.build([Boundary::Periodic; 3], 1.0)?;
     /// let system = System {
     ///     sim_box: start.sim_box,

@@ -21,6 +21,10 @@ pub(super) fn evaluation_seconds(case: &Case, plan: &Plan, records: &[Record], d
         .filter(|r| r.family == case.family && r.plan == *plan && r.device == device)
         .filter_map(|r| match &r.outcome {
             Outcome::Measured(m) => Some((r, m.evaluation_seconds, m.neighbors)),
+            // All pairs take the same time with any number of neighbours, and there may be no case to measure.
+            Outcome::TooSlow { predicted_seconds, .. } if plan.method == Method::Brute => {
+                Some((r, *predicted_seconds, 0.0))
+            }
             _ => None,
         })
         .max_by(|a, b| (a.0.n as f64 * (1.0 + a.2)).total_cmp(&(b.0.n as f64 * (1.0 + b.2))))?;

@@ -98,8 +98,9 @@ fn draw_legend<DB: DrawingBackend>(figure: &Figure, area: &Area<DB>, scale: u32)
         match series.style {
             Style::Line => area.draw(&PathElement::new([(x, y), (x + 20 * s, y)], color.stroke_width(2 * scale)))?,
             Style::Dashed => {
-                for from in [x, x + 12 * s] {
-                    area.draw(&PathElement::new([(from, y), (from + 8 * s, y)], color.stroke_width(2 * scale)))?;
+                // The marker is between.
+                for from in [x - 3 * s, x + 17 * s] {
+                    area.draw(&PathElement::new([(from, y), (from + 6 * s, y)], color.stroke_width(2 * scale)))?;
                 }
             }
             Style::Bar => area.draw(&Rectangle::new([(x, y - 5 * s), (x + 20 * s, y + 5 * s)], color.filled()))?,

@@ -1,11 +1,11 @@
 //! Paper A, figures 11 and 12.
 
-use super::{DeviceNames, by_method, curves_by_method, sizes_note};
+use super::{DeviceNames, by_method, curves_by_method, inputs, sizes_note};
 use crate::{
     bench::{Energy, Measurement, Record, Suite},
     report::{
         chart::{Axis, Figure, Panel, Style},
-        results::{distinct, measured, why_not},
+        results::{measured, why_not},
         section::Section,
         table::{Cell, Table, number},
     },
@@ -32,6 +32,10 @@ pub(super) fn section(records: &[&Record]) -> Section {
     }
 }
 
+/// Least seconds over which power is averaged: counters of GPUs are refreshed each 20 to 100 ms, so that shorter readings
+/// show the refreshing.
+const AVERAGED: f64 = 0.25;
+
 fn energy(record: &Record) -> Option<&Energy> {
     measured(record)?.energy.as_ref()
 }
@@ -56,15 +60,14 @@ fn meters(records: &[&Record]) -> String {
 
 fn panels(records: &[&Record], y: Axis, point: impl Fn(&Measurement) -> Option<f64>) -> Vec<Panel> {
     let names = DeviceNames::of(records);
-    let panel = |case: &str| {
-        let of_case: Vec<&Record> = records.iter().copied().filter(|record| record.case == case).collect();
+    let panel = |(case, n): (&str, usize)| {
+        let of_case: Vec<&Record> = records.iter().copied().filter(|r| r.case == case && r.n == n).collect();
         let mut series = by_method(&of_case, &names, |_| true, |_, m| Some((0.0, point(m)?)));
         let step = 1.0 / series.len().max(1) as f64;
         for (k, one) in series.iter_mut().enumerate() {
             one.style = Style::Bar;
             one.points[0].0 = (k as f64 + 0.5) * 0.8 * step - 0.4;
         }
-        let n = of_case.first().map_or(0, |record| record.n);
         Panel {
             title: format!("{case}, n = {n}"),
             x: Axis::names(vec![String::new()]),
@@ -73,7 +76,7 @@ fn panels(records: &[&Record], y: Axis, point: impl Fn(&Measurement) -> Option<f
             shade: Vec::new(),
         }
     };
-    distinct(records, |record| record.case.as_str()).into_iter().map(panel).filter(is_shown).collect()
+    inputs(records).into_iter().map(panel).filter(is_shown).collect()
 }
 
 fn is_shown(panel: &Panel) -> bool {
@@ -105,22 +108,37 @@ fn rate(records: &[&Record]) -> Figure {
 
 fn power(records: &[&Record]) -> Figure {
     let names = DeviceNames::of(records);
-    let panel = |case: &str| {
-        let of_case: Vec<&Record> = records.iter().copied().filter(|record| record.case == case).collect();
+    let panel = |(case, n): (&str, usize)| {
+        let of_case: Vec<&Record> = records.iter().copied().filter(|r| r.case == case && r.n == n).collect();
         let curve =
-            |_: &Record, m: &Measurement| m.energy.as_ref().map_or_else(Vec::new, |energy| energy.power.clone());
+            |_: &Record, m: &Measurement| m.energy.as_ref().map_or_else(Vec::new, |energy| averaged(&energy.power));
         let mut series = curves_by_method(&of_case, &names, |_| true, curve);
         for one in &mut series {
             one.marked = Some(Vec::new());
         }
-        Panel { title: case.into(), x: Axis::linear("s"), y: Axis::linear("W"), series, shade: Vec::new() }
+        let title = format!("{case}, n = {n}");
+        Panel { title, x: Axis::linear("s"), y: Axis::linear("W"), series, shade: Vec::new() }
     };
     Figure {
         id: "energy-power".into(),
         caption: "Power by time (paper A, figure 11)".into(),
         columns: 3,
-        panels: distinct(records, |record| record.case.as_str()).into_iter().map(panel).collect(),
+        panels: inputs(records).into_iter().map(panel).filter(is_shown).collect(),
     }
+}
+
+/// Power over longer intervals; each point is at the end of its interval, as it is in the record.
+fn averaged(power: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let (mut points, mut begin, mut last, mut joules) = (Vec::new(), 0.0, 0.0, 0.0);
+    for &(seconds, watts) in power {
+        joules += watts * (seconds - last);
+        last = seconds;
+        if seconds - begin >= AVERAGED {
+            points.push((seconds, joules / (seconds - begin)));
+            (begin, joules) = (seconds, 0.0);
+        }
+    }
+    points
 }
 
 fn table(records: &[&Record]) -> Table {
@@ -144,5 +162,18 @@ fn table(records: &[&Record]) -> Table {
         caption: "Energy".into(),
         header: header.map(str::to_owned).to_vec(),
         rows: records.iter().map(row).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn averaging_keeps_the_energy_of_short_readings() {
+        let power = [(0.01, 2000.0), (0.05, 0.0), (0.3, 400.0), (0.6, 300.0), (0.7, 900.0)];
+        let points = averaged(&power);
+        assert_eq!(points.len(), 2, "what is left at the end is too short");
+        assert!((points[0].1 - (20.0 + 100.0) / 0.3).abs() < 1e-9 && (points[1].1 - 300.0).abs() < 1e-9);
     }
 }

@@ -1,12 +1,12 @@
 //! Paper A, figure 13.
 
-use super::{DeviceNames, sizes_note};
+use super::{DeviceNames, inputs, sizes_note};
 use crate::{
     bench::{Measurement, Record, Suite},
     report::{
         chart::{Axis, Figure, Panel, Series, Style},
         palette,
-        results::{devices, distinct, measured, methods},
+        results::{devices, measured, methods},
         section::Section,
     },
 };
@@ -45,8 +45,8 @@ fn figure(
 ) -> Figure {
     let names = DeviceNames::of(records);
     let labels: Vec<String> = names.iter().map(|(_, name)| name.clone()).collect();
-    let panel = |case: &str| {
-        let of_case: Vec<&Record> = records.iter().copied().filter(|record| record.case == case).collect();
+    let panel = |(case, n): (&str, usize)| {
+        let of_case: Vec<&Record> = records.iter().copied().filter(|r| r.case == case && r.n == n).collect();
         let of_method = |method| {
             let at = |(k, (device, _)): (usize, &(&str, String))| {
                 let is_it = |r: &&&Record| r.plan.method == method && r.device_name == *device;
@@ -61,7 +61,7 @@ fn figure(
             }
         };
         Panel {
-            title: case.into(),
+            title: format!("{case}, n = {n}"),
             x: Axis::names(labels.clone()),
             y: Axis::log(unit),
             series: methods(&of_case).into_iter().map(of_method).filter(|s| !s.points.is_empty()).collect(),
@@ -72,6 +72,6 @@ fn figure(
         id: id.into(),
         caption: format!("{what} by device (paper A, figure 13)"),
         columns: 3,
-        panels: distinct(records, |record| record.case.as_str()).into_iter().map(panel).collect(),
+        panels: inputs(records).into_iter().map(panel).collect(),
     }
 }

@@ -13,7 +13,7 @@ mod speedup;
 use super::{
     chart::{Series, Style},
     palette,
-    results::{Results, devices, measured, methods as methods_of},
+    results::{Results, devices, distinct, measured, methods as methods_of},
     section::Section,
 };
 use crate::bench::{Measurement, Record, Suite};
@@ -100,6 +100,11 @@ fn curves_by_method(
         }
     }
     all
+}
+
+/// Cases with the number of particles: devices may have been measured at different ones.
+fn inputs<'a>(records: &[&'a Record]) -> Vec<(&'a str, usize)> {
+    distinct(records, |record| (record.case.as_str(), record.n))
 }
 
 /// `quick` sizes are said wherever numbers are shown.

@@ -6,7 +6,7 @@ use crate::{
     report::{
         chart::{Axis, Figure, Panel, Series, Style},
         palette::look,
-        results::{distinct, measured, sizes, slug},
+        results::{distinct, measured, sizes, slug, why_not},
         section::Section,
         table::{Cell, Table, mark_least, number},
     },
@@ -73,13 +73,17 @@ fn figure(records: &[&Record], device: &str, n: usize) -> Figure {
             shade,
         }
     };
-    let mut cases = distinct(records, |record| record.case.as_str());
+    let shown: Vec<&Record> = records.iter().copied().filter(|record| measured(record).is_some()).collect();
+    let mut cases = distinct(&shown, |record| record.case.as_str());
     // As in the paper: a row of positions, a column of radii.
     cases.sort_by_key(|case| ["lattice", "disordered", "cluster"].iter().position(|p| case.starts_with(p)));
     Figure {
         id: format!("policies-{}-{n}", slug(device)),
         caption: format!("Time of structure and query by step on {device}, n = {n} (paper A, figure 8)"),
-        columns: 4,
+        columns: match distinct(&shown, |record| record.case.split(' ').nth(1)).len() {
+            1 => cases.len(),
+            several => several,
+        },
         panels: cases.into_iter().map(panel).collect(),
     }
 }
@@ -114,7 +118,11 @@ fn table(records: &[&Record], device: &str, n: usize) -> Table {
             .iter()
             .map(|policy| match total(policy) {
                 Some((seconds, builds)) => (Some(seconds), Cell::text(format!("{} ({builds})", number(seconds)))),
-                None => (None, Cell::text("–")),
+                None => {
+                    let is_it = |r: &&&Record| r.case == case && r.plan.maintenance.to_string() == **policy;
+                    let (text, hint) = records.iter().find(is_it).map_or(("", String::new()), |r| why_not(&r.outcome));
+                    (None, Cell { text: text.into(), is_best: false, hint })
+                }
             })
             .collect();
         mark_least(&mut cells);

@@ -4,7 +4,7 @@ use super::{DeviceNames, by_method, sizes_note};
 use crate::{
     bench::{Measurement, Record, Suite},
     report::{
-        chart::{Axis, Figure, Panel, Series},
+        chart::{Axis, Figure, Panel, Series, Style},
         palette::{Look, Marker},
         results::{distinct, measured, slug, why_not},
         section::Section,
@@ -94,11 +94,16 @@ fn memory(records: &[&Record], device: &str) -> Figure {
     let panel = |start: &str| {
         let of_start: Vec<&Record> = records.iter().copied().filter(|record| record.case.starts_with(start)).collect();
         let point = |r: &Record, m: &Measurement| Some((r.n as f64, m.structure_bytes_per_particle));
+        let mut series = series(&of_start, point);
+        for one in &mut series {
+            // Several cases have the same n.
+            one.style = Style::Points;
+        }
         Panel {
             title: start.into(),
             x: Axis::log("particles"),
             y: Axis::log("bytes a particle"),
-            series: series(&of_start, point),
+            series,
             shade: Vec::new(),
         }
     };
