@@ -1,8 +1,12 @@
-//! Where the time of `cluster` goes: whole steps of the Lennard-Jones melt by phase.
+//! Where the time of `cluster` goes: whole steps of the Lennard-Jones melt by phase, and evaluations where particles
+//! have very many neighbours or next to none.
 //!
-//! `cargo bench -p nearfield-cpu --bench clusters [-- [METHOD:]N[:SKIN] ...]`. One line of JSON for each case, density
-//! 0.8442, cutoff 2.5, dt 0.005, after 200 steps of melting from T = 1.44: ns per particle and step of the phases that
-//! the engine reports, and of the whole; medians over batches of 40 steps or more. Threads: RAYON_NUM_THREADS.
+//! `cargo bench -p nearfield-cpu --bench clusters [-- [METHOD:]N[:SKIN|:rR] ...]`. One line of JSON for each case.
+//! Threads: RAYON_NUM_THREADS.
+//! - The melt: density 0.8442, cutoff 2.5, dt 0.005, after 200 steps of melting from T = 1.44: ns per particle and step
+//!   of the phases that the engine reports, and of the whole; medians over batches of 40 steps or more.
+//! - `rR`: paper A's lattice, spacing 10 with walls, and cutoff R: the median of three evaluations of forces, structure
+//!   included.
 
 use nearfield_core::{
     Boundary, Dynamics, Engine, Interaction, Method, Particles, Plan, Quantities, Radii, Report, SimBox, System,
@@ -19,19 +23,55 @@ fn main() {
     let words = if words.is_empty() { ["32000", "256000"].map(String::from).to_vec() } else { words };
     for word in words {
         let mut method = Method::Cluster;
-        let mut numbers = Vec::new();
+        let (mut numbers, mut cutoff) = (Vec::new(), None);
         for part in word.split(':') {
-            match part.parse() {
-                Ok(name) => method = name,
-                Err(_) => numbers.push(part.parse::<f64>().expect("a method or a number")),
+            match (part.parse(), part.strip_prefix('r').and_then(|r| r.parse::<f32>().ok())) {
+                (_, Some(r)) => cutoff = Some(r),
+                (Ok(name), None) => method = name,
+                (Err(_), None) => numbers.push(part.parse::<f64>().expect("a method or a number")),
             }
         }
         let mut plan = Plan::new(method);
         if let Some(&skin) = numbers.get(1) {
             plan.skin = skin as f32;
         }
-        run(numbers[0] as usize, &plan);
+        match cutoff {
+            Some(r) => evaluate(numbers[0] as usize, r, &plan),
+            None => run(numbers[0] as usize, &plan),
+        }
     }
+}
+
+/// Evaluations of paper A's lattice.
+fn evaluate(n: usize, cutoff: f32, plan: &Plan) {
+    let side = (n as f64).cbrt().round() as usize;
+    let mut rng = rand_pcg::Pcg64::seed_from_u64(1);
+    let mut along = |cell: usize| (cell as f32 + 0.5 + 0.01 * (rng.random::<f32>() - 0.5)) * 10.0;
+    let points = (0..side.pow(3)).map(|k| [k % side, k / side % side, k / side / side].map(&mut along));
+    let system = System {
+        particles: Particles::at(points.collect::<Vec<_>>()),
+        sim_box: SimBox::cubic(side as f32 * 10.0, Boundary::Wall).expect("a box"),
+        radii: Radii::Uniform(cutoff),
+        interaction: Interaction::lennard_jones(),
+    };
+    // Nothing moves, so a skin would have lists found once.
+    let plan = Plan { skin: 0.0, ..*plan };
+    let mut engine = CpuEngine::new();
+    engine.load(&system, &plan).expect("a load");
+    engine.evaluate(Quantities::FORCES).expect("an evaluation");
+    let mut seconds = [0.0; 3].map(|_: f64| {
+        let start = Instant::now();
+        engine.evaluate(Quantities::FORCES).expect("an evaluation");
+        start.elapsed().as_secs_f64()
+    });
+    seconds.sort_by(f64::total_cmp);
+    let pairs = engine.evaluate(Quantities::ALL).expect("an evaluation").pairs;
+    println!(
+        "{{\"method\": \"{}\", \"n\": {}, \"cutoff\": {cutoff}, \"pairs\": {pairs}, \"ms\": {:.1}}}",
+        plan.method,
+        side.pow(3),
+        1e3 * seconds[1]
+    );
 }
 
 /// A face-centred cubic crystal of at least `n` particles.

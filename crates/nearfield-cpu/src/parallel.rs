@@ -38,6 +38,7 @@ impl<'a, T: Copy> Scattered<'a, T> {
     /// # Safety
     /// No other thread reads or writes these elements, nor does this one by another reference, while the result lives.
     #[expect(clippy::mut_from_ref, reason = "the purpose of this type; see above")]
+    #[inline(always)]
     pub unsafe fn range(&self, range: Range<usize>) -> &mut [T] {
         let cells = &self.0[range];
         // SAFETY: UnsafeCell<T> has the layout of T, and exclusive access is the caller's promise.

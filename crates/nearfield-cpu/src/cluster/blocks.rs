@@ -1,19 +1,12 @@
-//! Particles in blocks of eight, sorted in space, and how far they have moved.
+//! Particles in blocks of eight, sorted in space.
 
-use super::{BLOCK, Moving, padding};
-use crate::{Grid, Structure, lanes, parallel::Scattered, physics::Physics};
-use nearfield_core::predicate::conservative_range;
+use super::{BLOCK, Moving, motion::Motion, padding};
+use crate::{Grid, Structure, parallel::Scattered, physics::Physics};
 use rayon::prelude::*;
 use std::ops::Range;
 
 /// Blocks that a task of a pass over particles handles.
 pub(super) const PAGE: usize = 64;
-
-/// Evaluations that an inner list is meant to serve.
-const HORIZON: f32 = 6.0;
-
-/// Least part of the budget it wants that a particle must be left by the outer list.
-const LEAST_BUDGET: f32 = 0.25;
 
 /// Eight vectors, an array for each component.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -42,14 +35,13 @@ pub(super) struct Blocks {
     pub cutoff: f32,
     /// Largest magnitude of a coordinate, images included: what rounding errors scale with.
     pub extent: f32,
-    at_build: Vec<Octet>,
-    at_prune: Vec<Octet>,
+    /// Where particles were expected to be halfway through the life of the outer list, and of the inner one.
+    pub midway: Vec<Octet>,
+    pub midway_of_inner: Vec<Octet>,
+    /// Farthest that `midway` is from where a particle was when the outer list was built.
+    pub lead: f32,
+    pub motion: Motion,
     order: Vec<u32>,
-    /// Most that a particle may move before the outer list is outrun; negative when nothing may.
-    limit: f32,
-    /// Budget for what velocities do not foretell.
-    surprise: f32,
-    evaluations_since_prune: u32,
 }
 
 impl Blocks {
@@ -110,7 +102,7 @@ impl Blocks {
         }
         self.first.push(self.block_of.len() as u32);
         let n = self.first.len() - 1;
-        for vectors in [&mut self.position, &mut self.crossings, &mut self.at_build, &mut self.at_prune] {
+        for vectors in [&mut self.position, &mut self.crossings, &mut self.midway, &mut self.midway_of_inner] {
             vectors.resize(n, Octet::default());
         }
         // Padding does not move.
@@ -125,10 +117,9 @@ impl Blocks {
             }));
         }
         let first = &self.first;
-        let pages = self.position.par_chunks_mut(PAGE).zip(self.at_build.par_chunks_mut(PAGE));
-        let extent = pages.enumerate().map(|(page, (positions, at_build))| {
+        let extent = self.position.par_chunks_mut(PAGE).enumerate().map(|(page, positions)| {
             let mut extent = 0.0f32;
-            for (k, (position, at_build)) in positions.iter_mut().zip(at_build).enumerate() {
+            for (k, position) in positions.iter_mut().enumerate() {
                 let b = page * PAGE + k;
                 let particles = first[b] as usize..first[b + 1] as usize;
                 for axis in 0..3 {
@@ -137,170 +128,24 @@ impl Blocks {
                     position.0[axis][..from.len()].copy_from_slice(from);
                     extent = from.iter().fold(extent, |m, x| m.max(x.abs()));
                 }
-                *at_build = *position;
             }
             extent
         });
         let extent = extent.reduce(|| 0.0, f32::max);
-        self.extent = self.period.into_iter().fold(extent, f32::max) + extent + self.cutoff;
+        self.extent = self.period.into_iter().fold(extent, f32::max) + extent + self.cutoff + skin;
         self.crossings.par_iter_mut().with_min_len(4096).for_each(|c| *c = Octet::default());
         self.crossed.fill(false);
-        // What is measured of a displacement is rounded like a coordinate.
-        let slack = conservative_range(0.0, self.extent);
-        self.limit = 0.5 * skin * (1.0 - 1e-5) - slack;
-        self.surprise = if self.surprise > 0.0 { self.surprise } else { 0.01 * self.cutoff };
-        self.evaluations_since_prune = 0;
-    }
-
-    /// Gives each particle a budget of displacement for the next few evaluations, by its velocity and no more than what
-    /// the outer list leaves it. False when that is too little for some particle.
-    pub fn plan_motion(&mut self, moving: Moving) -> bool {
-        // A budget that lasts longer or shorter than meant is too large or too small.
-        if self.evaluations_since_prune > 0 {
-            let lasted = self.evaluations_since_prune as f32 / HORIZON;
-            self.surprise *= lasted.recip().clamp(0.9, 1.2);
-        }
-        self.evaluations_since_prune = 0;
-        let horizon = HORIZON * moving.dt;
-        let Self { first, position, at_build, crossings, period, limit, surprise, budget, at_prune, .. } = self;
-        let pages = budget.par_chunks_mut(PAGE).zip(at_prune.par_chunks_mut(PAGE));
-        let enough = pages.enumerate().map(|(page, (budgets, at_prune))| {
-            let mut least = f32::INFINITY;
-            for (k, (budget, at_prune)) in budgets.iter_mut().zip(at_prune).enumerate() {
-                let b = page * PAGE + k;
-                let particles = first[b] as usize..first[b + 1] as usize;
-                *at_prune = position[b];
-                let [x, y, z] = moving.velocity.map(|v| &v[particles.clone()]);
-                for (lane, ((x, y), z)) in x.iter().zip(y).zip(z).enumerate() {
-                    let mut moved2 = 0.0;
-                    for axis in 0..3 {
-                        let d = position[b].0[axis][lane] - at_build[b].0[axis][lane];
-                        let d = d + crossings[b].0[axis][lane] * period[axis];
-                        moved2 += d * d;
-                    }
-                    let wanted = horizon * (x * x + y * y + z * z).sqrt() + *surprise;
-                    let left = *limit - moved2.sqrt();
-                    budget[lane] = wanted.min(left).max(0.0);
-                    least = least.min(left - LEAST_BUDGET * wanted);
-                }
-            }
-            least
-        });
-        enough.reduce(|| f32::INFINITY, f32::min) >= 0.0
-    }
-
-    /// Takes new positions of the same particles. Whether none has used up its budget.
-    pub fn refresh(&mut self, position: [&[f32]; 3]) -> bool {
-        self.evaluations_since_prune += 1;
-        let (first, at_build, at_prune, budget) = (&self.first, &self.at_build, &self.at_prune, &self.budget);
-        let period = self.period;
-        let pages = self.position.par_chunks_mut(PAGE);
-        let pages = pages.zip(self.crossings.par_chunks_mut(PAGE)).zip(self.crossed.par_chunks_mut(PAGE));
-        let kept = pages.enumerate().map(|(page, ((to, crossings), crossed))| {
-            let blocks = page * PAGE..page * PAGE + to.len();
-            super::isa().run(Refresh {
-                first: &first[blocks.start..=blocks.end],
-                at_build: &at_build[blocks.clone()],
-                at_prune: &at_prune[blocks.clone()],
-                budget: &budget[blocks],
-                position,
-                period,
-                to,
-                crossings,
-                crossed,
-            })
-        });
-        kept.reduce(|| true, |a, b| a & b)
+        self.begin_motion(moving, skin);
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let octets = self.position.capacity() + self.crossings.capacity();
-        (octets + self.at_build.capacity() + self.at_prune.capacity()) * size_of::<Octet>()
+        (octets + self.midway.capacity() + self.midway_of_inner.capacity()) * size_of::<Octet>()
             + (self.kind.capacity() + self.budget.capacity()) * 4 * BLOCK
             + 4 * (self.first.capacity() + self.block_of.capacity() + self.order.capacity())
             + self.crossed.capacity()
     }
-}
-
-/// Takes the positions of a page.
-struct Refresh<'a> {
-    first: &'a [u32],
-    at_build: &'a [Octet],
-    at_prune: &'a [Octet],
-    budget: &'a [[f32; BLOCK]],
-    position: [&'a [f32]; 3],
-    period: [f32; 3],
-    to: &'a mut [Octet],
-    crossings: &'a mut [Octet],
-    crossed: &'a mut [bool],
-}
-
-impl lanes::Kernel for Refresh<'_> {
-    /// Whether no particle has exceeded its budget.
-    type Output = bool;
-
-    #[inline(always)]
-    fn run<L: lanes::Lanes>(self, _: L) -> bool {
-        let Self { first, at_build, at_prune, budget, position, period, to, crossings, crossed } = self;
-        let mut all_kept = true;
-        for k in 0..to.len() {
-            let particles = first[k] as usize..first[k + 1] as usize;
-            let mut moved2 = [0.0f32; BLOCK];
-            for axis in 0..3 {
-                let from = &position[axis][particles.clone()];
-                let x = &mut to[k].0[axis];
-                if let Ok(whole) = <&[f32; BLOCK]>::try_from(from) {
-                    *x = *whole;
-                } else {
-                    x[..from.len()].copy_from_slice(from);
-                }
-                for lane in 0..BLOCK {
-                    let d = x[lane] - at_prune[k].0[axis][lane];
-                    moved2[lane] += d * d;
-                }
-            }
-            let mut over = 0.0f32;
-            for lane in 0..BLOCK {
-                over += if moved2[lane] >= budget[k][lane] * budget[k][lane] { 1.0 } else { 0.0 };
-            }
-            // Who crosses a periodic face seems to move far.
-            if over > 0.0 || crossed[k] {
-                let n = particles.len();
-                all_kept &= cross(&to[k], [&at_build[k], &at_prune[k]], n, &budget[k], period, &mut crossings[k]);
-                crossed[k] = crossings[k] != Octet::default();
-            }
-        }
-        all_kept
-    }
-}
-
-/// Counts the periods that particles of a block have crossed since the build. Whether, with them, the first `n` keep
-/// to their budgets.
-#[cold]
-fn cross(
-    now: &Octet,
-    [at_build, at_prune]: [&Octet; 2],
-    n: usize,
-    budget: &[f32; BLOCK],
-    period: [f32; 3],
-    crossings: &mut Octet,
-) -> bool {
-    let mut kept = true;
-    for lane in 0..n {
-        let mut moved2 = 0.0;
-        for axis in 0..3 {
-            // The nearest image: whoever moves by half the box has outrun the list either way.
-            let nearest = |d: f32| if period[axis] > 0.0 { -(d / period[axis]).round() } else { 0.0 };
-            let x = now.0[axis][lane];
-            crossings.0[axis][lane] = nearest(x - at_build.0[axis][lane]);
-            let d = x - at_prune.0[axis][lane];
-            let d = d + nearest(d) * period[axis];
-            moved2 += d * d;
-        }
-        kept &= moved2 < budget[lane] * budget[lane];
-    }
-    kept
 }
 
 /// Sorts `order` by `x`, nearly sorted as it is: the grid has put particles into cells of two.

@@ -8,6 +8,7 @@ use super::{
     sums::{Exact, PageSums},
 };
 use crate::{
+    Grid,
     kernel::with_law,
     lanes::{self, Lanes},
     physics::Physics,
@@ -21,14 +22,21 @@ use nearfield_core::{
 type PairFunction<'a> = &'a (dyn Fn(f32, u32, u32) -> [f32; 2] + Sync);
 
 /// See [`super::Clusters::evaluate`].
-pub(super) fn evaluate(physics: &Physics, blocks: &Blocks, list: &PairList, sums: &mut PageSums, out: Output) -> bool {
+pub(super) fn evaluate(
+    physics: &Physics,
+    blocks: &Blocks,
+    list: &mut PairList,
+    grid: Option<&Grid>,
+    sums: &mut PageSums,
+    out: Output,
+) -> bool {
     let cutoff = physics.cutoff();
     with_law!(physics, law, coefficients => {
         let pair = |r2: f32, kind_i: u32, kind_j: u32| {
             let c = coefficients.get(kind_i, kind_j, cutoff);
             [law.f_over_r(r2, &c), law.energy(r2, &c)]
         };
-        sums.evaluate_exactly(blocks, list, out, &|list, sums| {
+        sums.evaluate_exactly(blocks, list, grid, out, &|list, sums| {
             super::isa().run(Kernel { pair: &pair, blocks, list, physics, sums });
         })
     })
@@ -51,7 +59,7 @@ impl lanes::Kernel for Kernel<'_> {
         let range2 = lanes.splat(blocks.cutoff * blocks.cutoff);
         for segment in &list.segments {
             let cluster = segment.cluster as usize;
-            let quad = Quad::<L>::new(lanes, blocks, cluster, segment.image);
+            let quad = Quad::<L>::new(lanes, blocks, &blocks.position, cluster, segment.image);
             for (k, &j) in list.blocks[segment.start as usize..segment.end as usize].iter().enumerate() {
                 let j = j as usize;
                 let at = twice(lanes, &blocks.position[j]);

@@ -48,7 +48,7 @@ impl Plain {
         let c = physics.interaction.single(physics.cutoff()).0;
         let scale = (48.0 * f64::from(kind.epsilon) * sigma6 * sigma6) as f32;
         let usable = (0.02..=20.0).contains(&kind.sigma)
-            && physics.cutoff() <= 100.0
+            && physics.cutoff() <= 300.0
             && physics.cap == f32::INFINITY
             && scale.is_normal()
             && physics.interaction.truncation != Truncation::Force;
@@ -164,6 +164,12 @@ impl<const FORCE_SHIFT: bool> Law for Typed<FORCE_SHIFT> {
     }
 }
 
+/// How far displacements of pairs are shifted: not at all, by the image of the segment, or by that and what particles
+/// have crossed.
+const HERE: u8 = 0;
+const IMAGE: u8 = 1;
+const CROSSED: u8 = 2;
+
 /// Adds the forces of the pairs of `list` to `force`, and where `ENERGY` their energies, virials and number to
 /// `energy`, all over the law's scale.
 pub(super) struct Kernel<'a, P, const ENERGY: bool> {
@@ -172,6 +178,8 @@ pub(super) struct Kernel<'a, P, const ENERGY: bool> {
     pub list: &'a Pairs,
     pub force: &'a mut [Octet],
     pub energy: &'a mut [Octet],
+    /// Scratch: blocks of a segment some of whose particles have crossed a face.
+    pub crossed: &'a mut Vec<u32>,
 }
 
 /// Sums of a cluster against the blocks of a segment.
@@ -185,7 +193,7 @@ impl<P: Law, const ENERGY: bool> lanes::Kernel for Kernel<'_, P, ENERGY> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
-        let Self { law, blocks, list, force, energy } = self;
+        let Self { law, blocks, list, force, energy, crossed } = self;
         // Slices of one length need but one test of an index.
         let n = blocks.len();
         let view = View {
@@ -194,54 +202,39 @@ impl<P: Law, const ENERGY: bool> lanes::Kernel for Kernel<'_, P, ENERGY> {
             position: &blocks.position[..n],
             crossed: &blocks.crossed[..n],
             kind: if P::TYPED && !blocks.kind.is_empty() { &blocks.kind[..n] } else { &[] },
+            range2: lanes.splat(blocks.cutoff * blocks.cutoff),
         };
         let (force, energy) = (&mut force[..n], if ENERGY { &mut energy[..n] } else { energy });
         for segment in &list.segments {
             let cluster = segment.cluster as usize;
             let (block, at) = (cluster / 2, cluster % 2 * CLUSTER);
-            let quad = Quad::<L>::new(lanes, blocks, cluster, segment.image);
             let kinds = if P::TYPED && !view.kind.is_empty() { view.kind[block] } else { [0; BLOCK] };
-            let kinds: [u32; CLUSTER] = [kinds[at], kinds[at + 1], kinds[at + 2], kinds[at + 3]];
             let zero = [[lanes.splat(0.0); 3]; VECTORS];
             let mut sums = Sums::<L> { force: zero, energy: zero };
-            let with_images = segment.image != [0; 3] || view.crossed[block];
-            let mut listed = &list.blocks[segment.start as usize..segment.end as usize];
-            let mut to = Target { sums: &mut sums, force: &mut *force, energy: &mut *energy };
-            if let (true, &[own, ref others @ ..]) = (segment.own, listed) {
-                let [first, second] = own_pairs(cluster);
-                let pairs = [lanes.mask(first), lanes.mask(second)];
-                if with_images {
-                    view.add::<L, 2, ENERGY, true, true>(lanes, &quad, &kinds, [own as usize; 2], pairs, &mut to);
+            let mut target = Target {
+                quad: Quad::<L>::new(lanes, blocks, view.position, cluster, segment.image),
+                kinds: [kinds[at], kinds[at + 1], kinds[at + 2], kinds[at + 3]],
+                sums: &mut sums,
+                force: &mut *force,
+                energy: &mut *energy,
+            };
+            let listed = &list.blocks[segment.start as usize..segment.end as usize];
+            let all = lanes.mask(u16::MAX);
+            let [first, second] = if segment.own { own_pairs(cluster) } else { [u16::MAX; VECTORS] };
+            let mut pairs = [lanes.mask(first), lanes.mask(second), all, all];
+            let mut apart = listed;
+            if !view.crossed[block] {
+                crossed.clear();
+                if segment.image == [0; 3] {
+                    view.add_segment::<ENERGY, HERE>(lanes, listed, pairs, &mut target, crossed);
                 } else {
-                    view.add::<L, 2, ENERGY, false, true>(lanes, &quad, &kinds, [own as usize; 2], pairs, &mut to);
+                    view.add_segment::<ENERGY, IMAGE>(lanes, listed, pairs, &mut target, crossed);
                 }
-                listed = others;
+                (apart, pairs) = (&*crossed, [all; 4]);
             }
-            let all = [lanes.mask(u16::MAX); VECTORS];
-            if with_images {
-                for &j in listed {
-                    view.add::<L, 2, ENERGY, true, false>(lanes, &quad, &kinds, [j as usize; 2], all, &mut to);
-                }
-            } else {
-                let (twos, last) = listed.as_chunks::<2>();
-                for two in twos {
-                    let two = [two[0] as usize, two[1] as usize];
-                    if view.crossed[two[0]] | view.crossed[two[1]] {
-                        for j in two {
-                            view.add::<L, 2, ENERGY, true, false>(lanes, &quad, &kinds, [j; 2], all, &mut to);
-                        }
-                    } else {
-                        view.add::<L, 4, ENERGY, false, false>(lanes, &quad, &kinds, two, all, &mut to);
-                    }
-                }
-                for &j in last {
-                    let j = j as usize;
-                    if view.crossed[j] {
-                        view.add::<L, 2, ENERGY, true, false>(lanes, &quad, &kinds, [j; 2], all, &mut to);
-                    } else {
-                        view.add::<L, 2, ENERGY, false, false>(lanes, &quad, &kinds, [j; 2], all, &mut to);
-                    }
-                }
+            for &j in apart {
+                view.add::<2, ENERGY, CROSSED, true>(lanes, [j as usize; 2], pairs, &mut target);
+                pairs = [all; 4];
             }
             for axis in 0..3 {
                 let of_four = lanes.sum_halves(sums.force[0][axis], sums.force[1][axis]);
@@ -259,56 +252,96 @@ impl<P: Law, const ENERGY: bool> lanes::Kernel for Kernel<'_, P, ENERGY> {
     }
 }
 
-/// What the kernel adds to.
+/// A cluster and what its pairs are added to.
 struct Target<'a, L: Lanes> {
+    quad: Quad<L>,
+    kinds: [u32; CLUSTER],
     sums: &'a mut Sums<L>,
     force: &'a mut [Octet],
     energy: &'a mut [Octet],
 }
 
 /// What the kernel reads.
-struct View<'a, P> {
+struct View<'a, P, L: Lanes> {
     law: P,
     blocks: &'a Blocks,
     position: &'a [Octet],
     crossed: &'a [bool],
     kind: &'a [[u32; BLOCK]],
+    range2: L::F,
 }
 
-impl<P: Law> View<'_, P> {
-    /// The pairs of a cluster and one block (`K` = 2 vectors) or two (`K` = 4): all lanes, or where `MASKED` those of
-    /// `pairs`. Without `SHIFTED` none has an image.
+impl<P: Law, L: Lanes> View<'_, P, L> {
+    /// The pairs of a cluster and the blocks `listed`, of the first of which only those of `pairs` count. Blocks of
+    /// which some particle has crossed a face are put into `crossed`. The cluster's own has not.
     #[inline(always)]
-    fn add<L: Lanes, const K: usize, const ENERGY: bool, const SHIFTED: bool, const MASKED: bool>(
+    fn add_segment<const ENERGY: bool, const SHIFT: u8>(
         &self,
         lanes: L,
-        quad: &Quad<L>,
-        kinds: &[u32; CLUSTER],
+        listed: &[u32],
+        pairs: [L::M; 4],
+        to: &mut Target<L>,
+        crossed: &mut Vec<u32>,
+    ) {
+        // One block or two, so that what is left is even.
+        let (first, others) = listed.split_at(2 - listed.len() % 2);
+        let [a, b] = [first[0] as usize, first[first.len() - 1] as usize];
+        if self.crossed[a] {
+            crossed.extend_from_slice(first);
+        } else if a == b || self.crossed[b] {
+            self.add::<2, ENERGY, SHIFT, true>(lanes, [a; 2], pairs, to);
+            crossed.extend_from_slice(&first[1..]);
+        } else {
+            self.add::<4, ENERGY, SHIFT, true>(lanes, [a, b], pairs, to);
+        }
+        for two in others.as_chunks::<2>().0 {
+            let [a, b] = [two[0] as usize, two[1] as usize];
+            if self.crossed[a] | self.crossed[b] {
+                crossed.extend_from_slice(two);
+            } else {
+                self.add::<4, ENERGY, SHIFT, false>(lanes, [a, b], pairs, to);
+            }
+        }
+    }
+
+    /// The pairs of a cluster and one block (`K` = 2 vectors) or two (`K` = 4): all lanes, or where `MASKED` those of
+    /// `pairs`.
+    #[inline(always)]
+    fn add<const K: usize, const ENERGY: bool, const SHIFT: u8, const MASKED: bool>(
+        &self,
+        lanes: L,
         j: [usize; 2],
-        pairs: [L::M; VECTORS],
+        pairs: [L::M; 4],
         to: &mut Target<L>,
     ) {
-        let blocks = self.blocks;
         let at = [twice(lanes, &self.position[j[0]]), twice(lanes, &self.position[j[1]])];
-        let range2 = lanes.splat(blocks.cutoff * blocks.cutoff);
         let zero = lanes.splat(0.0);
-        let shifts = if SHIFTED { quad.shifts(lanes, blocks, j[0]) } else { [[zero; 3]; VECTORS] };
+        let shifts = match SHIFT {
+            HERE => [[zero; 3]; VECTORS],
+            IMAGE => to.quad.shifts_of_image(),
+            _ => to.quad.shifts(lanes, self.blocks, j[0]),
+        };
         let mut d = [[zero; 3]; K];
         let (mut r2, mut y, mut c) = ([zero; K], [zero; K], [[zero; 4]; K]);
         let mut inside = [pairs[0]; K];
         for k in 0..K {
-            d[k] = quad.displacement::<SHIFTED>(lanes, k % VECTORS, at[k / VECTORS], &shifts);
+            let (v, at) = (k % VECTORS, at[k / VECTORS]);
+            d[k] = if SHIFT == HERE {
+                to.quad.displacement::<false>(lanes, v, at, &shifts)
+            } else {
+                to.quad.displacement::<true>(lanes, v, at, &shifts)
+            };
         }
         for k in 0..K {
             r2[k] = squared_length(lanes, d[k]);
         }
         for k in 0..K {
-            let near = lanes.less(r2[k], range2);
-            inside[k] = if MASKED { lanes.and(near, pairs[k % VECTORS]) } else { near };
+            let near = lanes.less(r2[k], self.range2);
+            inside[k] = if MASKED { lanes.and(near, pairs[k]) } else { near };
             y[k] = lanes.reciprocal(inside[k], r2[k]);
         }
         for k in 0..K {
-            let kinds_i = [kinds[k % VECTORS * 2], kinds[k % VECTORS * 2 + 1]];
+            let kinds_i = [to.kinds[k % VECTORS * 2], to.kinds[k % VECTORS * 2 + 1]];
             let kinds_j = if P::TYPED && !self.kind.is_empty() { &self.kind[j[k / VECTORS]] } else { &[0; BLOCK] };
             c[k] = self.law.coefficients(lanes, kinds_i, kinds_j);
         }

@@ -1,7 +1,7 @@
 //! The lists of cluster pairs: built from the grid, pruned to what the next few evaluations need.
 
 use super::{
-    blocks::Blocks,
+    blocks::{Blocks, Octet, PAGE},
     quad::{self, Quad, VECTORS, squared_length, twice},
 };
 use crate::{
@@ -11,12 +11,15 @@ use crate::{
 use nearfield_core::predicate::conservative_range;
 use rayon::prelude::*;
 use std::{
-    ops::{Range, RangeInclusive},
+    ops::Range,
     sync::atomic::{AtomicU64, Ordering::Relaxed},
 };
 
 /// Tasks for each thread: enough for those that end early to help the others.
-const TASKS_PER_THREAD: usize = 4;
+pub(super) const TASKS_PER_THREAD: usize = 4;
+
+/// Entries of a list that is made for one use: they stay in the cache.
+const BATCH: usize = 8192;
 
 /// Fewest blocks worth a task.
 const LEAST_BLOCKS: usize = 16;
@@ -46,12 +49,11 @@ impl Pairs {
         self.blocks.clear();
     }
 
-    /// Closes a segment of the blocks that were added since the last one.
-    fn close(&mut self, cluster: u32, image: [i8; 3], start: u32) {
-        let end = self.blocks.len() as u32;
+    /// Closes a segment of the blocks from `start` to `end`.
+    fn close(&mut self, cluster: u32, image: [i8; 3], start: usize, end: usize) {
         if end > start {
-            let own = self.blocks[start as usize] == cluster / 2;
-            self.segments.push(Segment { cluster, image, own, start, end });
+            let own = self.blocks[start] == cluster / 2;
+            self.segments.push(Segment { cluster, image, own, start: start as u32, end: end as u32 });
         }
     }
 
@@ -80,17 +82,34 @@ pub(super) struct PairList {
 }
 
 impl PairList {
+    /// Divides the blocks among `per_thread` tasks for each thread.
+    pub fn divide(&mut self, blocks: &Blocks, per_thread: usize) {
+        let n = blocks.len();
+        let n_tasks = (per_thread * rayon::current_num_threads()).min(n.div_ceil(LEAST_BLOCKS)).max(1);
+        self.tasks.resize_with(n_tasks, Task::default);
+        for (t, task) in self.tasks.iter_mut().enumerate() {
+            task.clusters_of = n * t / n_tasks..n * (t + 1) / n_tasks;
+        }
+    }
+
     /// Lists all pairs of clusters and blocks with particles within `reach`; false when that takes more than `budget`
     /// bytes.
     pub fn build(&mut self, grid: &Grid, blocks: &Blocks, reach: f32, budget: u64) -> bool {
-        let n = blocks.len();
-        let n_tasks = (TASKS_PER_THREAD * rayon::current_num_threads()).min(n.div_ceil(LEAST_BLOCKS)).max(1);
-        self.tasks.resize_with(n_tasks, Task::default);
+        self.divide(blocks, TASKS_PER_THREAD);
         let bytes = AtomicU64::new(0);
-        self.tasks.par_iter_mut().with_max_len(1).enumerate().for_each(|(t, task)| {
-            task.clusters_of = n * t / n_tasks..n * (t + 1) / n_tasks;
+        self.tasks.par_iter_mut().with_max_len(1).for_each(|task| {
+            let (mut from, mut counted) = (task.clusters_of.start, 0);
             task.outer.clear();
-            super::isa().run(Build { grid, blocks, reach, task, bytes: &bytes, budget });
+            while from < task.clusters_of.end {
+                let enough = task.outer.blocks.len() + BATCH;
+                from = super::isa().run(Build { grid, blocks, reach, task, from, enough });
+                let now = (task.outer.segments.len() * size_of::<Segment>() + 4 * task.outer.blocks.len()) as u64;
+                // Twice: the inner list takes no more than the outer one.
+                if bytes.fetch_add(2 * (now - counted), Relaxed) > budget {
+                    return;
+                }
+                counted = now;
+            }
         });
         bytes.into_inner() <= budget
     }
@@ -105,57 +124,90 @@ impl PairList {
     }
 }
 
+impl Task {
+    /// Lists the pairs within the cutoff of some blocks after the others, each time in the place of those before.
+    pub fn for_each_batch(&mut self, grid: &Grid, blocks: &Blocks, mut with: impl FnMut(&Pairs)) {
+        let mut from = self.clusters_of.start;
+        while from < self.clusters_of.end {
+            self.outer.clear();
+            from = super::isa().run(Build { grid, blocks, reach: blocks.cutoff, task: self, from, enough: BATCH });
+            with(&self.outer);
+        }
+    }
+
+    /// Marks the pages of blocks that are listed, or with a `grid`, for there is no list then, that may come to be.
+    pub fn mark_pages(&mut self, grid: Option<&Grid>, blocks: &Blocks, seen: &mut [bool]) {
+        self.clusters_of.clone().for_each(|b| seen[b / PAGE] = true);
+        let Some(grid) = grid else {
+            return self.outer.blocks.iter().for_each(|&b| seen[b as usize / PAGE] = true);
+        };
+        for first in self.clusters_of.clone().step_by(PAGE) {
+            let some = first..(first + PAGE).min(self.clusters_of.end);
+            let all = some.map(|b| bounds(blocks, b, blocks.cutoff)).reduce(|a, b| GroupBox {
+                lo: std::array::from_fn(|axis| a.lo[axis].min(b.lo[axis])),
+                hi: std::array::from_fn(|axis| a.hi[axis].max(b.hi[axis])),
+                ..a
+            });
+            self.runs.clear();
+            all.iter().for_each(|all| grid.find_rows(all, blocks.first[first], &mut self.runs));
+            for run in &self.runs {
+                let (from, to) = (blocks.block_of[run.start as usize], blocks.block_of[run.end as usize - 1]);
+                seen[from as usize / PAGE..=to as usize / PAGE].fill(true);
+            }
+        }
+    }
+}
+
+/// Lists the pairs of blocks beginning with `from`, until there are `enough` entries. Gives the block to go on with.
 struct Build<'a> {
     grid: &'a Grid,
     blocks: &'a Blocks,
     reach: f32,
     task: &'a mut Task,
-    /// Of the lists of all tasks.
-    bytes: &'a AtomicU64,
-    budget: u64,
+    from: usize,
+    enough: usize,
 }
 
 impl lanes::Kernel for Build<'_> {
-    type Output = ();
+    type Output = usize;
 
     #[inline(always)]
-    fn run<L: Lanes>(self, lanes: L) {
-        let Self { grid, blocks, reach, task, bytes, budget } = self;
+    fn run<L: Lanes>(self, lanes: L) -> usize {
+        let Self { grid, blocks, reach, task, from, enough } = self;
         let Task { clusters_of, outer, runs, second, .. } = task;
-        let mut counted = 0;
-        for b in clusters_of.clone() {
-            let group = bounds(blocks, b, reach);
+        let reach2 = lanes.splat(conservative_range(reach, blocks.extent).powi(2));
+        let mut b = from;
+        while b < clusters_of.end && outer.blocks.len() < enough {
+            // Blocks are near by where they are expected, rows by where they are.
+            let group = bounds(blocks, b, reach + blocks.lead);
             runs.clear();
-            grid.find_rows(&group, runs);
-            let reach = lanes.splat(conservative_reach(&group, blocks.period).powi(2));
+            grid.find_rows(&group, blocks.first[b], runs);
             for runs in runs.chunk_by(|a, b| a.image == b.image) {
                 let image = runs[0].image;
-                let quads =
-                    [Quad::<L>::new(lanes, blocks, 2 * b, image), Quad::<L>::new(lanes, blocks, 2 * b + 1, image)];
-                let start = outer.blocks.len() as u32;
+                let quads = [
+                    Quad::<L>::new(lanes, blocks, &blocks.midway, 2 * b, image),
+                    Quad::<L>::new(lanes, blocks, &blocks.midway, 2 * b + 1, image),
+                ];
+                let start = outer.blocks.len();
                 second.clear();
                 for run in runs {
                     let first = blocks.block_of[run.start as usize].max(b as u32);
                     let last = blocks.block_of[run.end as usize - 1];
                     let near = [&mut outer.blocks, &mut *second];
                     if image == [0; 3] {
-                        find_near::<L, false>(lanes, blocks, &quads, reach, first..=last, near);
+                        find_near::<L, false>(lanes, blocks, &quads, reach2, first..last + 1, near);
                     } else {
-                        find_near::<L, true>(lanes, blocks, &quads, reach, first..=last, near);
+                        find_near::<L, true>(lanes, blocks, &quads, reach2, first..last + 1, near);
                     }
                 }
-                outer.close(2 * b as u32, image, start);
-                let start = outer.blocks.len() as u32;
+                let middle = outer.blocks.len();
                 outer.blocks.extend_from_slice(second);
-                outer.close(2 * b as u32 + 1, image, start);
+                outer.close(2 * b as u32, image, start, middle);
+                outer.close(2 * b as u32 + 1, image, middle, outer.blocks.len());
             }
-            let now = (outer.segments.len() * size_of::<Segment>() + 4 * outer.blocks.len()) as u64;
-            // Twice: the inner list takes no more than the outer one.
-            if bytes.fetch_add(2 * (now - counted), Relaxed) > budget {
-                return;
-            }
-            counted = now;
+            b += 1;
         }
+        b
     }
 }
 
@@ -167,48 +219,60 @@ fn find_near<L: Lanes, const IMAGES: bool>(
     blocks: &Blocks,
     quads: &[Quad<L>; 2],
     reach2: L::F,
-    run: RangeInclusive<u32>,
+    run: Range<u32>,
     [first, second]: [&mut Vec<u32>; 2],
 ) {
+    // Each is written and then kept or not: a branch would be foretold wrongly half of the time.
+    let (mut a, mut b) = (first.len(), second.len());
+    first.resize(a + run.len(), 0);
+    second.resize(b + run.len(), 0);
     for j in run {
-        if any_within::<L, IMAGES>(lanes, blocks, &quads[0], j as usize, [reach2; VECTORS]) {
-            first.push(j);
-        }
-        if any_within::<L, IMAGES>(lanes, blocks, &quads[1], j as usize, [reach2; VECTORS]) {
-            second.push(j);
-        }
+        first[a] = j;
+        second[b] = j;
+        a += usize::from(any_within::<L, IMAGES>(
+            lanes,
+            blocks,
+            &blocks.midway,
+            &quads[0],
+            j as usize,
+            [reach2; VECTORS],
+        ));
+        b += usize::from(any_within::<L, IMAGES>(
+            lanes,
+            blocks,
+            &blocks.midway,
+            &quads[1],
+            j as usize,
+            [reach2; VECTORS],
+        ));
     }
+    first.truncate(a);
+    second.truncate(b);
 }
 
-/// Whether any pair of a cluster and block `j` is within its reach (squared).
+/// Whether any pair of a cluster and block `j`, at `position`, is within its reach (squared).
 #[inline(always)]
 fn any_within<L: Lanes, const IMAGES: bool>(
     lanes: L,
     blocks: &Blocks,
+    position: &[Octet],
     quad: &Quad<L>,
     j: usize,
     reach2: [L::F; VECTORS],
 ) -> bool {
-    let at = twice(lanes, &blocks.position[j]);
+    let at = twice(lanes, &position[j]);
     let shifts = if IMAGES { quad.shifts(lanes, blocks, j) } else { [at; VECTORS] };
     let first = squared_length(lanes, quad.displacement::<IMAGES>(lanes, 0, at, &shifts));
     let second = squared_length(lanes, quad.displacement::<IMAGES>(lanes, 1, at, &shifts));
     lanes.lt(first, reach2[0]) | lanes.lt(second, reach2[1]) != 0
 }
 
-/// The box around the particles of block `b`.
+/// The box around the particles of block `b` where they are expected.
 fn bounds(blocks: &Blocks, b: usize, radius: f32) -> GroupBox {
     let n = blocks.particles(b).len();
-    let position = &blocks.position[b].0;
+    let position = &blocks.midway[b].0;
     let over = |from: f32, f: fn(f32, f32) -> f32| position.map(|x| x[..n].iter().fold(from, |m, &v| f(m, v)));
     GroupBox { lo: over(f32::INFINITY, f32::min), hi: over(f32::NEG_INFINITY, f32::max), radius }
-}
-
-/// The group's radius with an allowance for rounding.
-fn conservative_reach(group: &GroupBox, period: [f32; 3]) -> f32 {
-    let largest = |values: [f32; 3]| values.iter().fold(0.0f32, |m, v| m.max(v.abs()));
-    // Whatever is in range has coordinates no larger than this.
-    conservative_range(group.radius, largest(group.lo).max(largest(group.hi)) + largest(period) + group.radius)
 }
 
 struct Prune<'a> {
@@ -222,32 +286,36 @@ impl lanes::Kernel for Prune<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
         let Self { blocks, task } = self;
+        let midway = &blocks.midway_of_inner[..];
         let Task { outer, inner, .. } = task;
-        inner.clear();
+        inner.segments.clear();
+        // What is beyond the last segment is left over.
+        inner.blocks.resize(outer.blocks.len(), 0);
+        let mut end = 0;
         for segment in &outer.segments {
             let cluster = segment.cluster as usize;
             let (block, at) = (cluster / 2, cluster % 2 * quad::CLUSTER);
-            let quad = Quad::<L>::new(lanes, blocks, cluster, segment.image);
+            let quad = Quad::<L>::new(lanes, blocks, midway, cluster, segment.image);
             let budget = &blocks.budget[block];
             let range = |lane: usize| conservative_range(blocks.cutoff + budget[at + lane], blocks.extent);
             let ranges = [lanes.halves(range(0), range(1)), lanes.halves(range(2), range(3))];
             let with_images = segment.image != [0; 3] || blocks.crossed[block];
-            let start = inner.blocks.len() as u32;
+            let start = end;
             for &j in &outer.blocks[segment.start as usize..segment.end as usize] {
                 let b = j as usize;
                 let theirs = lanes.twice(&blocks.budget[b]);
                 let reach = [lanes.add(ranges[0], theirs), lanes.add(ranges[1], theirs)];
                 let reach2 = [lanes.mul(reach[0], reach[0]), lanes.mul(reach[1], reach[1])];
                 let near = if with_images || blocks.crossed[b] {
-                    any_within::<L, true>(lanes, blocks, &quad, b, reach2)
+                    any_within::<L, true>(lanes, blocks, midway, &quad, b, reach2)
                 } else {
-                    any_within::<L, false>(lanes, blocks, &quad, b, reach2)
+                    any_within::<L, false>(lanes, blocks, midway, &quad, b, reach2)
                 };
-                if near {
-                    inner.blocks.push(j);
-                }
+                // Written and then kept or not: a branch would be foretold wrongly half of the time.
+                inner.blocks[end] = j;
+                end += usize::from(near);
             }
-            inner.close(segment.cluster, segment.image, start);
+            inner.close(segment.cluster, segment.image, start, end);
         }
     }
 }

@@ -7,10 +7,13 @@
 //! doi:10.1016/j.cpc.2013.06.003, with the layout that was fastest on Zen 4).
 //!
 //! The *outer* list holds everything within the cutoff plus a skin and serves until some particle has moved half of
-//! the skin. The *inner* list is the part of it that is near enough for the next few evaluations: each particle has a
-//! budget of displacement ([`Blocks::plan_motion`]), two particles are kept while their distance exceeds the cutoff by
-//! less than both budgets, and the list is pruned anew when some particle has used its budget up. Displacements are
-//! measured before each use, so no pair is missed.
+//! the skin from where it was expected ([`motion`]). The *inner* list is the part of it that is near enough for the
+//! next few evaluations: each particle has a budget of displacement ([`Blocks::plan_motion`]), two particles are kept
+//! while their distance exceeds the cutoff by less than both budgets, and the list is pruned anew when some particle
+//! has used its budget up. Displacements are measured before each use, so no pair is missed.
+//!
+//! Where particles have very many neighbours no list is stored: the pairs of a few clusters at a time are listed and
+//! computed while they are in the cache ([`Clusters::build_without_list`]).
 //!
 //! Which pairs interact, the predicate decides for each evaluation, from wrapped positions: particles that crossed a
 //! periodic face since the list was built have it counted in the image ([`Quad`]).
@@ -21,6 +24,7 @@ mod blocks;
 mod exact;
 mod lennard_jones;
 mod list;
+mod motion;
 mod quad;
 mod sums;
 #[cfg(test)]
@@ -28,12 +32,13 @@ mod tests;
 
 use crate::{Grid, Slots, lanes::Isa, physics::Physics};
 use blocks::Blocks;
-use list::PairList;
+use list::{PairList, TASKS_PER_THREAD};
 use nearfield_core::{Truncation, potentials::Potential};
+use std::ops::Range;
 pub(crate) use sums::Output;
 
 /// Particles in a block.
-const BLOCK: usize = 8;
+pub(crate) const BLOCK: usize = 8;
 
 /// Where particles are and how they move, in the engine's order; `dt` is zero where they do not.
 #[derive(Clone, Copy)]
@@ -52,15 +57,30 @@ pub(crate) struct Clusters {
     sums: sums::PageSums,
     /// Whether the list serves: it was built for particles in this order and has not been outrun.
     valid: bool,
+    /// Whether all particles keep to their budgets, where that was found out when they moved.
+    kept: Option<bool>,
+}
+
+/// Moves particles.
+pub(crate) trait Mover: Sync {
+    /// Moves `particles`, all those of a block, from `position` by `force`. Implementations are `#[inline(always)]`.
+    fn advance(&self, particles: Range<usize>, force: &[[f32; BLOCK]; 3], position: &mut [[f32; BLOCK]; 3]);
+}
+
+/// Whether pairs can be computed in whole vectors.
+pub(crate) fn has_vector_law(physics: &Physics) -> bool {
+    let interaction = &physics.interaction;
+    matches!(interaction.potential, Potential::LennardJones(_)) && interaction.types.len() <= BLOCK
 }
 
 impl Clusters {
     /// Takes the present positions. Whether the list still holds every pair; otherwise it must be built.
     pub fn refresh(&mut self, moving: Moving) -> bool {
+        let kept = self.kept.take();
         if !self.valid {
             return false;
         }
-        if !self.blocks.refresh(moving.position) {
+        if !kept.unwrap_or_else(|| self.blocks.refresh(moving.position)) {
             self.valid = self.blocks.plan_motion(moving);
             if self.valid {
                 self.list.prune(&self.blocks);
@@ -80,7 +100,7 @@ impl Clusters {
         self.blocks.fill(grid, physics, moving, skin);
         self.valid = self.list.build(grid, &self.blocks, physics.cutoff() + skin, budget);
         if self.valid {
-            self.sums.lay_out(&self.list, self.blocks.len());
+            self.sums.lay_out(&mut self.list, &self.blocks, None);
             // What is left is nothing where there is no skin: the list is then for one evaluation.
             self.blocks.plan_motion(moving);
             self.list.prune(&self.blocks);
@@ -88,28 +108,48 @@ impl Clusters {
         self.valid
     }
 
-    /// Forces, and energies where `out` has room for them. Sums of `exact` do not depend on the order of terms. False
-    /// when some force is not finite.
-    pub fn evaluate(&mut self, physics: &Physics, exact: bool, out: Output) -> bool {
-        let Self { blocks, list, sums, .. } = self;
-        let interaction = &physics.interaction;
-        let lennard_jones = matches!(interaction.potential, Potential::LennardJones(_));
-        if exact || !lennard_jones || interaction.types.len() > BLOCK {
-            exact::evaluate(physics, blocks, list, sums, out)
-        } else if let (Truncation::Cut | Truncation::Energy, Some(law)) =
-            (interaction.truncation, lennard_jones::Plain::new(physics))
-        {
-            sums.evaluate(blocks, list, law, out)
-        } else if interaction.truncation == Truncation::Force {
-            sums.evaluate(blocks, list, lennard_jones::Typed::<true>::new(physics), out)
+    /// Builds blocks without a list, for particles in [`Clusters::order`] that are to be evaluated once, with the grid.
+    pub fn build_without_list(&mut self, grid: &Grid, physics: &Physics, moving: Moving) {
+        self.valid = false;
+        self.blocks.fill(grid, physics, moving, 0.0);
+        self.list.divide(&self.blocks, 2 * TASKS_PER_THREAD);
+        self.sums.lay_out(&mut self.list, &self.blocks, Some(grid));
+    }
+
+    /// Forces, and energies where `out` has room for them. Sums of `exact` do not depend on the order of terms. With a
+    /// `grid` pairs are found in it, batch by batch, after [`Clusters::build_without_list`]. False when some force is
+    /// not finite.
+    pub fn evaluate(&mut self, physics: &Physics, grid: Option<&Grid>, exact: bool, out: Output) -> bool {
+        if exact || !has_vector_law(physics) {
+            exact::evaluate(physics, &self.blocks, &mut self.list, grid, &mut self.sums, out)
         } else {
-            sums.evaluate(blocks, list, lennard_jones::Typed::<false>::new(physics), out)
+            let scale = self.compute(physics, grid, !out.energy.is_empty());
+            self.sums.give(&self.blocks, scale, out)
+        }
+    }
+
+    /// Computes forces, has particles moved by them, and takes their new positions, all where there is a list and a law
+    /// for vectors ([`has_vector_law`]). The next [`Clusters::refresh`] need not look at positions again.
+    pub fn advance<M: Mover>(&mut self, physics: &Physics, mover: &M) {
+        let scale = self.compute(physics, None, false);
+        self.kept = Some(self.sums.advance(&mut self.blocks, scale, mover));
+    }
+
+    fn compute(&mut self, physics: &Physics, grid: Option<&Grid>, energies: bool) -> f32 {
+        let Self { blocks, list, sums, .. } = self;
+        let truncation = physics.interaction.truncation;
+        if let (Truncation::Cut | Truncation::Energy, Some(law)) = (truncation, lennard_jones::Plain::new(physics)) {
+            sums.compute(blocks, list, grid, law, energies)
+        } else if truncation == Truncation::Force {
+            sums.compute(blocks, list, grid, lennard_jones::Typed::<true>::new(physics), energies)
+        } else {
+            sums.compute(blocks, list, grid, lennard_jones::Typed::<false>::new(physics), energies)
         }
     }
 
     /// Forgets the list: particles were put in another order.
     pub fn invalidate(&mut self) {
-        self.valid = false;
+        (self.valid, self.kept) = (false, None);
     }
 
     /// Bytes held.

@@ -36,11 +36,11 @@ pub(super) struct Quad<L: Lanes> {
 }
 
 impl<L: Lanes> Quad<L> {
-    /// Cluster `cluster`, to be paired with blocks seen in `image`.
+    /// Cluster `cluster`, of blocks at `position`, to be paired with blocks seen in `image`.
     #[inline(always)]
-    pub fn new(lanes: L, blocks: &Blocks, cluster: usize, image: [i8; 3]) -> Self {
+    pub fn new(lanes: L, blocks: &Blocks, position: &[Octet], cluster: usize, image: [i8; 3]) -> Self {
         let (block, at) = (cluster / 2, cluster % 2 * CLUSTER);
-        let position = &blocks.position[block];
+        let position = &position[block];
         let [x, y, z] = image.map(f32::from);
         let [px, py, pz] = blocks.period;
         Self {
@@ -57,10 +57,10 @@ impl<L: Lanes> Quad<L> {
     #[inline(always)]
     pub fn shifts(&self, lanes: L, blocks: &Blocks, j: usize) -> [[L::F; 3]; VECTORS] {
         if !(self.crossed | blocks.crossed[j]) {
-            return [self.shift; VECTORS];
+            return self.shifts_of_image();
         }
         let theirs = twice(lanes, &blocks.crossings[j]);
-        let mut shifts = [self.shift; VECTORS];
+        let mut shifts = self.shifts_of_image();
         for v in 0..VECTORS {
             let own = halves(lanes, &blocks.crossings[self.block], self.at + 2 * v);
             for axis in 0..3 {
@@ -69,6 +69,12 @@ impl<L: Lanes> Quad<L> {
             }
         }
         shifts
+    }
+
+    /// As [`Quad::shifts`], where nobody has crossed.
+    #[inline(always)]
+    pub fn shifts_of_image(&self) -> [[L::F; 3]; VECTORS] {
+        [self.shift; VECTORS]
     }
 
     /// `(x_j - x_i) + shift` of vector `v`. Without `SHIFTED` there is no shift.

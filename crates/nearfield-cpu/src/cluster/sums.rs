@@ -4,12 +4,13 @@
 //! added. Tasks are added in their order: results do not depend on which thread did what.
 
 use super::{
-    BLOCK,
+    BLOCK, Mover,
     blocks::{Blocks, Octet, PAGE},
     lennard_jones::{Kernel, Law},
     list::{PairList, Pairs},
+    motion::Page,
 };
-use crate::parallel::Scattered;
+use crate::{Grid, lanes, parallel::Scattered};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
@@ -41,6 +42,8 @@ struct TaskSums {
     energy: Vec<Octet>,
     exact: Vec<Exact>,
     touched: Vec<u32>,
+    /// See [`Kernel`].
+    crossed: Vec<u32>,
     /// Whether a page is in `touched`.
     seen: Vec<bool>,
 }
@@ -71,18 +74,16 @@ fn clear<T: Copy + Default>(values: &mut Vec<T>, touched: &[u32], n: usize) {
 }
 
 impl PageSums {
-    /// Finds which pages tasks touch.
-    pub fn lay_out(&mut self, list: &PairList, n_blocks: usize) {
-        self.n_blocks = n_blocks;
-        let n_pages = n_blocks.div_ceil(PAGE);
+    /// Finds which pages tasks touch: those of their lists, or with a `grid`, for there is no list then, those in
+    /// range.
+    pub fn lay_out(&mut self, list: &mut PairList, blocks: &Blocks, grid: Option<&Grid>) {
+        self.n_blocks = blocks.len();
+        let n_pages = blocks.n_pages();
         self.tasks.resize_with(list.tasks.len(), TaskSums::default);
-        self.tasks.par_iter_mut().zip(&list.tasks).with_max_len(1).for_each(|(sums, task)| {
+        self.tasks.par_iter_mut().zip(&mut list.tasks).with_max_len(1).for_each(|(sums, task)| {
             sums.seen.clear();
             sums.seen.resize(n_pages, false);
-            let own = task.clusters_of.clone().map(|b| b as u32);
-            for b in own.chain(task.outer.blocks.iter().copied()) {
-                sums.seen[b as usize / PAGE] = true;
-            }
+            task.mark_pages(grid, blocks, &mut sums.seen);
             sums.touched.clear();
             sums.touched.extend((0..n_pages as u32).filter(|&p| sums.seen[p as usize]));
         });
@@ -95,67 +96,120 @@ impl PageSums {
         self.starts.push(self.touching.len() as u32);
     }
 
-    /// Sums by a law for vectors. False when a force is not finite.
-    pub fn evaluate<P: Law>(&mut self, blocks: &Blocks, list: &PairList, law: P, out: Output) -> bool {
-        let (n, energies) = (self.n_blocks, !out.energy.is_empty());
-        self.tasks.par_iter_mut().zip(&list.tasks).with_max_len(1).for_each(|(sums, task)| {
-            let TaskSums { force, energy, touched, .. } = sums;
-            clear(force, touched, n);
-            let list = &task.inner;
+    /// Sums by a law for vectors, of energies too or of forces alone. Gives what they are to be multiplied with. With a
+    /// `grid` there is no list.
+    pub fn compute<P: Law>(
+        &mut self,
+        blocks: &Blocks,
+        list: &mut PairList,
+        grid: Option<&Grid>,
+        law: P,
+        energies: bool,
+    ) -> f32 {
+        let n = self.n_blocks;
+        let clear = |sums: &mut TaskSums| {
+            clear(&mut sums.force, &sums.touched, n);
             if energies {
-                clear(energy, touched, n);
-                super::isa().run(Kernel::<P, true> { law, blocks, list, force, energy });
+                clear(&mut sums.energy, &sums.touched, n);
+            }
+        };
+        self.for_each_list(blocks, list, grid, &clear, &|TaskSums { force, energy, crossed, .. }, list| {
+            if energies {
+                super::isa().run(Kernel::<P, true> { law, blocks, list, force, energy, crossed });
             } else {
-                super::isa().run(Kernel::<P, false> { law, blocks, list, force, energy: &mut [] });
+                super::isa().run(Kernel::<P, false> { law, blocks, list, force, energy: &mut [], crossed });
             }
         });
-        let scale = law.scale();
+        law.scale()
+    }
+
+    /// Calls `begin` for the sums of each task, then `add` with them and its inner list, or all batches of pairs within
+    /// the cutoff where there is a `grid`.
+    fn for_each_list(
+        &mut self,
+        blocks: &Blocks,
+        list: &mut PairList,
+        grid: Option<&Grid>,
+        begin: &(dyn Fn(&mut TaskSums) + Sync),
+        add: &(dyn Fn(&mut TaskSums, &Pairs) + Sync),
+    ) {
+        self.tasks.par_iter_mut().zip(&mut list.tasks).with_max_len(1).for_each(|(sums, task)| {
+            begin(sums);
+            match grid {
+                None => add(sums, &task.inner),
+                Some(grid) => task.for_each_batch(grid, blocks, |pairs| add(sums, pairs)),
+            }
+        });
+    }
+
+    /// Hands out what was computed. False when a force is not finite.
+    pub fn give(&self, blocks: &Blocks, scale: f32, out: Output) -> bool {
+        let energies = !out.energy.is_empty();
         self.hand_out(blocks, out, |tasks, b| {
             let mut sums = Exact::default();
-            let mut force = Octet::default();
-            for &t in tasks {
-                let task = &self.tasks[t as usize];
-                for axis in 0..3 {
-                    for lane in 0..BLOCK {
-                        force.0[axis][lane] += task.force[b].0[axis][lane];
-                    }
-                }
-                if energies {
-                    for k in 0..3 {
+            if energies {
+                for &t in tasks {
+                    let energy = &self.tasks[t as usize].energy[b].0;
+                    for (sums, terms) in sums.0[3..].iter_mut().zip(energy) {
                         for lane in 0..BLOCK {
-                            sums.0[3 + k][lane] += f64::from(task.energy[b].0[k][lane]);
+                            sums[lane] += f64::from(terms[lane]);
                         }
                     }
                 }
+                for sums in &mut sums.0[3..5] {
+                    sums.iter_mut().for_each(|sum| *sum *= f64::from(scale));
+                }
             }
+            (self.force(tasks, b, scale), sums)
+        })
+    }
+
+    /// Moves particles by the computed forces. Whether all keep to their budgets.
+    pub fn advance<M: Mover>(&self, blocks: &mut Blocks, scale: f32, mover: &M) -> bool {
+        let kept = blocks.pages().enumerate().map(|(p, page)| {
+            let tasks = self.touching_page(p);
+            super::isa().run(Advance { sums: self, tasks, scale, page, mover })
+        });
+        kept.reduce(|| true, |a, b| a & b)
+    }
+
+    /// The force on block `b` from the `tasks` that touch it.
+    #[inline(always)]
+    fn force(&self, tasks: &[u32], b: usize, scale: f32) -> Octet {
+        let mut force = Octet::default();
+        for &t in tasks {
+            let terms = &self.tasks[t as usize].force[b];
             for axis in 0..3 {
                 for lane in 0..BLOCK {
-                    force.0[axis][lane] *= scale;
+                    force.0[axis][lane] += terms.0[axis][lane];
                 }
             }
-            if energies {
-                for lane in 0..BLOCK {
-                    sums.0[3][lane] *= f64::from(scale);
-                    sums.0[4][lane] *= f64::from(scale);
-                }
+        }
+        for axis in 0..3 {
+            for lane in 0..BLOCK {
+                force.0[axis][lane] *= scale;
             }
-            (force, sums)
-        })
+        }
+        force
+    }
+
+    /// The tasks that touch page `p`.
+    fn touching_page(&self, p: usize) -> &[u32] {
+        &self.touching[self.starts[p] as usize..self.starts[p + 1] as usize]
     }
 
     /// Sums by a function that adds a list's pairs to exact sums. False when a force is not finite.
     pub fn evaluate_exactly(
         &mut self,
         blocks: &Blocks,
-        list: &PairList,
+        list: &mut PairList,
+        grid: Option<&Grid>,
         out: Output,
         add: &(dyn Fn(&Pairs, &mut [Exact]) + Sync),
     ) -> bool {
         let n = self.n_blocks;
-        self.tasks.par_iter_mut().zip(&list.tasks).with_max_len(1).for_each(|(sums, task)| {
-            clear(&mut sums.exact, &sums.touched, n);
-            add(&task.inner, &mut sums.exact);
-        });
+        let clear = |sums: &mut TaskSums| clear(&mut sums.exact, &sums.touched, n);
+        self.for_each_list(blocks, list, grid, &clear, &|sums, pairs| add(pairs, &mut sums.exact));
         self.hand_out(blocks, out, |tasks, b| {
             let mut sums = Exact::default();
             for &t in tasks {
@@ -179,7 +233,7 @@ impl PageSums {
         let neighbors = Scattered::new(out.neighbors);
         let finite = AtomicBool::new(true);
         (0..blocks.n_pages()).into_par_iter().for_each(|p| {
-            let tasks = &self.touching[self.starts[p] as usize..self.starts[p + 1] as usize];
+            let tasks = self.touching_page(p);
             let mut check = [0.0f32; BLOCK];
             for b in blocks.page(p) {
                 let (of_block, sums) = total(tasks, b);
@@ -220,5 +274,30 @@ impl PageSums {
             task.touched.len() * PAGE * block + task.seen.capacity()
         };
         self.tasks.iter().map(of_task).sum::<usize>() + 4 * self.touching.capacity()
+    }
+}
+
+/// Moves the particles of a page by the forces on them. Gives whether all keep to their budgets.
+struct Advance<'a, M> {
+    sums: &'a PageSums,
+    tasks: &'a [u32],
+    scale: f32,
+    page: Page<'a>,
+    mover: &'a M,
+}
+
+impl<M: Mover> lanes::Kernel for Advance<'_, M> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<L: lanes::Lanes>(self, _: L) -> bool {
+        let Self { sums, tasks, scale, mut page, mover } = self;
+        let mut kept = true;
+        for k in 0..page.position.len() {
+            let force = sums.force(tasks, page.start + k, scale);
+            mover.advance(page.particles(k), &force.0, &mut page.position[k].0);
+            kept &= page.keeps_to_budget(k);
+        }
+        kept
     }
 }

@@ -22,32 +22,47 @@ struct Built {
 }
 
 fn gas(n: usize, lengths: [f32; 3], boundary: Boundary, cutoff: f32, seed: u64) -> System {
+    let mut particles = Particles::at(uniform_points(seed, n, lengths));
+    for (i, v) in uniform_points(seed + 1, n, [1.0; 3]).into_iter().enumerate() {
+        particles.velocity.set(i, v.map(|v| v - 0.5));
+    }
     System {
         sim_box: SimBox::new([0.0; 3], lengths, [boundary; 3]).unwrap(),
-        particles: Particles::at(uniform_points(seed, n, lengths)),
+        particles,
         radii: Radii::Uniform(cutoff),
         interaction: Interaction::lennard_jones(),
     }
 }
 
-fn moving(positions: &Vec3s) -> Moving<'_> {
-    let position = positions.axes().map(|axis| &axis[..]);
-    Moving { position, velocity: position, kind: &[], dt: 0.0 }
+/// Particles that move by a tenth of a unit or less in a step.
+fn moving(particles: &Particles) -> Moving<'_> {
+    let [position, velocity] = [&particles.position, &particles.velocity].map(|of| of.axes().map(|axis| &axis[..]));
+    Moving { position, velocity, kind: &[], dt: 0.02 }
 }
 
-fn build(mut system: System, skin: f32) -> Built {
+/// `life` is how many steps the list is thought to serve.
+fn build(mut system: System, skin: f32, life: u32) -> Built {
     let physics = Physics::new(&system);
+    let grid = sort(&mut system, skin, &mut Clusters::default());
+    let mut clusters = Clusters::default();
+    clusters.blocks.motion.life = life;
+    assert!(clusters.build(&grid, &physics, moving(&system.particles), skin, u64::MAX));
+    Built { system, physics, clusters }
+}
+
+/// Puts the particles into the order of clusters. Gives the grid that they are in.
+fn sort(system: &mut System, skin: f32, clusters: &mut Clusters) -> Grid {
     let mut grid = Grid::default();
     let [x, y, z] = system.particles.position.axes();
-    let radii = InputRadii::Uniform(physics.cutoff() + skin);
+    let radii = InputRadii::Uniform(system.radii.largest() + skin);
     grid.build(&Input { sim_box: &system.sim_box, position: [x, y, z], radii, kind: &[] });
-    let mut clusters = Clusters::default();
     let order = clusters.order(&grid).to_vec();
     assert_eq!(order.len(), grid.slots().len());
-    let sorted: Vec<[f32; 3]> = order.iter().map(|&i| system.particles.position.get(i as usize)).collect();
-    system.particles = Particles::at(sorted);
-    assert!(clusters.build(&grid, &physics, moving(&system.particles.position), skin, u64::MAX));
-    Built { system, physics, clusters }
+    let sorted = |of: &Vec3s| order.iter().map(|&i| of.get(i as usize)).collect::<Vec<_>>();
+    let (position, velocity) = (sorted(&system.particles.position), sorted(&system.particles.velocity));
+    system.particles = Particles::at(position);
+    velocity.iter().enumerate().for_each(|(i, v)| system.particles.velocity.set(i, *v));
+    grid
 }
 
 impl Built {
@@ -118,7 +133,7 @@ fn systems() -> Vec<System> {
 fn every_pair_within_cutoff_and_skin_is_listed_once() {
     for system in systems() {
         let what = format!("{:?}, {} particles", system.sim_box, system.particles.len());
-        let built = build(system, 0.3);
+        let built = build(system, 0.3, 0);
         let outer = built.listed(|task| &task.outer);
         for pair in built.pairs_within(1.8) {
             assert_eq!(outer.get(&pair), Some(&1), "{what}: {pair:?}");
@@ -135,7 +150,7 @@ fn every_pair_within_cutoff_and_skin_is_listed_once() {
 #[test]
 fn padding_is_listed_nowhere_and_blocks_hold_every_particle_once() {
     for system in systems() {
-        let built = build(system, 0.3);
+        let built = build(system, 0.3, 0);
         let blocks = &built.clusters.blocks;
         let n = built.system.particles.len();
         let mut next = 0;
@@ -156,44 +171,82 @@ fn padding_is_listed_nowhere_and_blocks_hold_every_particle_once() {
     }
 }
 
-/// Particles drift, cross faces and meet; the lists are asked for as in a run.
+/// Neighbours of each particle, and the forces on them.
+fn evaluate(built: &mut Built, grid: Option<&Grid>) -> (Vec<u32>, [Vec<f32>; 3]) {
+    let n = built.system.particles.len();
+    let mut neighbors = vec![0; n];
+    let mut force = [vec![0.0; n], vec![0.0; n], vec![0.0; n]];
+    let out = Output {
+        force: force.each_mut().map(|axis| &mut axis[..]),
+        energy: &mut vec![0.0; n],
+        virial: &mut vec![0.0; n],
+        neighbors: &mut neighbors,
+    };
+    assert!(built.clusters.evaluate(&built.physics, grid, false, out));
+    (neighbors, force)
+}
+
+fn neighbors_by_oracle(system: &System) -> Vec<u32> {
+    let mut neighbors = vec![0; system.particles.len()];
+    for pair in oracle::pairs(&system.sim_box, &system.particles, &system.radii) {
+        neighbors[pair.i as usize] += 1;
+        neighbors[pair.j as usize] += 1;
+    }
+    neighbors
+}
+
+/// Particles drift, cross faces and meet; the lists are asked for as in a run. Some do what their velocities foretell,
+/// others stop or turn back halfway.
 #[test]
 fn no_pair_is_missed_while_particles_move_and_cross_faces() {
-    let mut built = build(gas(300, [5.0, 6.0, 7.0], Boundary::Periodic, 1.5, 5), 0.6);
-    let n = built.system.particles.len();
-    let velocity = uniform_points(6, n, [1.0; 3]).into_iter().map(|v| v.map(|v| v - 0.5)).collect::<Vec<_>>();
-    let (mut served, mut crossed) = (0, 0);
-    for _ in 0..60 {
-        for (i, v) in velocity.iter().enumerate() {
-            let moved = [0, 1, 2].map(|axis| built.system.particles.position.get(i)[axis] + 0.02 * v[axis]);
-            let (wrapped, crossings) = built.system.sim_box.wrap(moved);
-            crossed += u32::from(crossings != [0; 3]);
-            built.system.particles.position.set(i, wrapped);
+    for life in [0, 30, 1000] {
+        let mut built = build(gas(300, [5.0, 6.0, 7.0], Boundary::Periodic, 1.5, 5), 0.6, life);
+        let n = built.system.particles.len();
+        let (mut served, mut crossed) = (0, 0);
+        for step in 0..60 {
+            for i in 0..n {
+                let particles = &mut built.system.particles;
+                if step == 7 && i % 3 > 0 {
+                    let turned = particles.velocity.get(i).map(|v| -v * (i % 3 - 1) as f32);
+                    particles.velocity.set(i, turned);
+                }
+                let (x, v) = (particles.position.get(i), particles.velocity.get(i));
+                let moved = [0, 1, 2].map(|axis| x[axis] + 0.02 * v[axis]);
+                let (wrapped, crossings) = built.system.sim_box.wrap(moved);
+                crossed += u32::from(crossings != [0; 3]);
+                particles.position.set(i, wrapped);
+            }
+            if !built.clusters.refresh(moving(&built.system.particles)) {
+                break;
+            }
+            served += 1;
+            assert_eq!(evaluate(&mut built, None).0, neighbors_by_oracle(&built.system), "after {served} evaluations");
         }
-        if !built.clusters.refresh(moving(&built.system.particles.position)) {
-            break;
-        }
-        served += 1;
-        let mut neighbors = vec![0; n];
-        let mut force = [vec![0.0; n], vec![0.0; n], vec![0.0; n]];
-        let (mut energy, mut virial) = (vec![0.0; n], vec![0.0; n]);
-        let out = Output {
-            force: force.each_mut().map(|axis| &mut axis[..]),
-            energy: &mut energy,
-            virial: &mut virial,
-            neighbors: &mut neighbors,
-        };
-        assert!(built.clusters.evaluate(&built.physics, false, out));
-        let pairs = oracle::pairs(&built.system.sim_box, &built.system.particles, &built.system.radii);
-        let mut expected = vec![0; n];
-        for pair in &pairs {
-            expected[pair.i as usize] += 1;
-            expected[pair.j as usize] += 1;
-        }
-        assert_eq!(neighbors, expected, "after {served} evaluations");
+        assert!((10..60).contains(&served), "the list served {served} evaluations");
+        assert!(crossed > 10, "{crossed} particles crossed a face");
     }
-    assert!((10..60).contains(&served), "the list served {served} evaluations");
-    assert!(crossed > 10, "{crossed} particles crossed a face");
+}
+
+#[test]
+fn batches_find_the_pairs_of_lists_and_give_their_forces() {
+    for mut system in systems() {
+        let what = format!("{:?}, {} particles", system.sim_box, system.particles.len());
+        let mut clusters = Clusters::default();
+        let grid = sort(&mut system, 0.0, &mut clusters);
+        let mut listed = build(system.clone(), 0.3, 0);
+        let expected = listed.system.particles.position.clone();
+        clusters.build_without_list(&grid, &listed.physics, moving(&system.particles));
+        let mut built = Built { physics: Physics::new(&system), system, clusters };
+        let (neighbors, force) = evaluate(&mut built, Some(&grid));
+        assert_eq!(neighbors, neighbors_by_oracle(&built.system), "{what}");
+        if expected == built.system.particles.position {
+            let (_, by_list) = evaluate(&mut listed, None);
+            let largest = force.iter().flatten().fold(0.0f32, |m, f| m.max(f.abs()));
+            for (a, b) in force.iter().flatten().zip(by_list.iter().flatten()) {
+                assert!((a - b).abs() <= 1e-5 * largest, "{what}: {a} {b}");
+            }
+        }
+    }
 }
 
 /// Forces and energies of the blocks' particles by one law and instruction set.
@@ -203,8 +256,9 @@ fn by_vectors<P: Law>(isa: Isa, built: &Built, law: P) -> Vec<[f64; 6]> {
     let (mut force, mut energy, mut only) = (zeros.clone(), zeros.clone(), zeros);
     for task in &list.tasks {
         let list = &task.inner;
-        isa.run(Kernel::<P, true> { law, blocks, list, force: &mut force, energy: &mut energy });
-        isa.run(Kernel::<P, false> { law, blocks, list, force: &mut only, energy: &mut [] });
+        let crossed = &mut Vec::new();
+        isa.run(Kernel::<P, true> { law, blocks, list, force: &mut force, energy: &mut energy, crossed });
+        isa.run(Kernel::<P, false> { law, blocks, list, force: &mut only, energy: &mut [], crossed });
     }
     let mut sums = vec![[0.0; 6]; built.system.particles.len()];
     for b in 0..blocks.len() {
@@ -243,7 +297,7 @@ fn kernels_of_every_instruction_set_equal_the_oracle() {
             if !typed {
                 system.interaction.types.truncate(1);
             }
-            let mut built = build(system, 0.1);
+            let mut built = build(system, 0.1, 0);
             if typed {
                 let kinds: Vec<u32> = (0..built.system.particles.len() as u32).map(|i| i * 7 % 3).collect();
                 built.system.particles.kind.clone_from(&kinds);

@@ -1,12 +1,24 @@
 //! The method `cluster`: a pair list that is kept while its skin lasts, particles in its order.
 
-use super::evaluate::Loaded;
-use crate::cluster::{Clusters, Output};
-use nearfield_core::{Plan, Radii, SimBox, maintenance::Action};
+use super::{
+    evaluate::{Loaded, NonFiniteWatch},
+    integrate::{Integrator, Moving},
+    state::State,
+};
+use crate::{
+    cluster::{BLOCK, Clusters, Mover, Output, has_vector_law},
+    parallel::Scattered,
+};
+use nearfield_core::{Method, Plan, Quantities, Radii, Result, SimBox, maintenance::Action};
 use std::{
+    ops::Range,
     sync::atomic::{AtomicBool, Ordering::Relaxed},
     time::Instant,
 };
+
+/// Most bytes of a list for each particle, worth some thousand pairs in lanes: it costs more to read larger ones than
+/// to find the pairs of a batch of clusters again.
+const MOST_BYTES: u64 = 1024;
 
 /// The pair list and how it is kept.
 pub(super) struct StoredClusters {
@@ -24,7 +36,7 @@ pub(super) struct StoredClusters {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Listing {
     Possible,
-    /// The list was larger than the memory budget.
+    /// The list was larger than the memory budget or than is good: pairs are found anew for each evaluation.
     TooLarge,
     /// Radii differ from particle to particle.
     DifferentRadii,
@@ -47,8 +59,8 @@ impl StoredClusters {
         }
     }
 
-    /// Has list and forces made anew before the next step. Another engine that takes the particles over has no list: the
-    /// order of sums, which is that of the list, would tell it from this one.
+    /// Has list and forces made anew before the next step. Another engine that takes the particles over has no list:
+    /// the order of sums, which is that of the list, would tell it from this one.
     pub fn end(&self) {
         self.ended.store(true, Relaxed);
     }
@@ -80,47 +92,184 @@ impl Loaded {
         let input = state.input(physics, state.radii(physics));
         upkeep.update(Action::Build, &input, report);
         let gridded = start.elapsed();
-        if list {
+        if stored.listing != Listing::DifferentRadii {
             let grid = upkeep.index.grid().expect("cluster has a grid");
             let order = stored.clusters.order(grid);
             state.reorder(order);
             results.reorder(order);
             let moving = state.moving_slices(self.dt);
-            if stored.clusters.build(grid, physics, moving, stored.skin, plan.memory_budget) {
+            let budget = plan.memory_budget.min(MOST_BYTES * state.len() as u64);
+            if list && stored.clusters.build(grid, physics, moving, stored.skin, budget) {
                 report.list_builds += 1;
                 if stored.age == 1 && stored.skin > 0.0 && report.list_builds > 1 {
                     report.dangerous_builds += 1;
                 }
                 stored.age = 0;
             } else {
-                stored.listing = Listing::TooLarge;
-                stored.clusters = Clusters::default();
-                // The particles have left the order that the grid was built for.
-                let input = state.input(physics, state.radii(physics));
-                upkeep.update(Action::Build, &input, report);
+                if list {
+                    (stored.listing, stored.clusters) = (Listing::TooLarge, Clusters::default());
+                }
+                stored.clusters.build_without_list(grid, physics, moving);
             }
         }
         report.build_seconds += (start.elapsed() - gridded).as_secs_f64();
     }
 
-    /// Forces, and energies where results have room, from the list; `None` when there is none, else whether all forces
-    /// are finite.
+    /// Forces, and energies where results have room; `None` when radii differ, else whether all forces are finite.
     pub fn evaluate_clusters(&mut self) -> Option<bool> {
-        match self.clusters.listing {
-            Listing::Possible => {}
-            Listing::TooLarge => {
-                self.report.batched_evaluations += 1;
-                return None;
-            }
+        let Self { plan, physics, results, upkeep, clusters: stored, report, .. } = self;
+        let grid = match stored.listing {
+            Listing::Possible => None,
+            Listing::TooLarge => upkeep.index.grid(),
             Listing::DifferentRadii => return None,
-        }
-        let results = &mut self.results;
+        };
+        report.batched_evaluations += u64::from(grid.is_some());
         let out = Output {
             force: results.force.axes_mut().map(|axis| &mut axis[..]),
             energy: &mut results.energy,
             virial: &mut results.virial,
             neighbors: &mut results.neighbors,
         };
-        Some(self.clusters.clusters.evaluate(&self.physics, self.plan.deterministic, out))
+        Some(stored.clusters.evaluate(physics, grid, plan.deterministic, out))
     }
+
+    /// Whether steps may be taken by [`Loaded::advance_clusters`].
+    pub fn steps_by_clusters(&self, integrator: &Integrator) -> bool {
+        self.plan.method == Method::Cluster
+            && !self.plan.deterministic
+            && self.clusters.listing == Listing::Possible
+            && has_vector_law(&self.physics)
+            && integrator.has_fast_path()
+    }
+
+    /// Steps in which one pass over the particles, after the pairs, adds their forces up, ends a step and begins the
+    /// next. The arithmetic of a step is that of separate passes.
+    pub fn advance_clusters(
+        &mut self,
+        integrator: &Integrator,
+        from: u64,
+        steps: u64,
+        quantities: Quantities,
+    ) -> Result<()> {
+        self.start(integrator, from + 1)?;
+        for step in from + 1..from + steps {
+            self.prepare(step);
+            if self.clusters.listing == Listing::Possible {
+                self.move_by_clusters(integrator, step)?;
+            } else {
+                self.evaluate(Quantities::FORCES, step)?;
+                self.finish(integrator);
+                self.start(integrator, step + 1)?;
+            }
+        }
+        self.evaluate(quantities, from + steps)?;
+        self.finish(integrator);
+        Ok(())
+    }
+
+    fn move_by_clusters(&mut self, integrator: &Integrator, step: u64) -> Result<()> {
+        self.results.prepare(self.state.len(), false);
+        let (forces, positions) = (NonFiniteWatch::default(), NonFiniteWatch::default());
+        let start = Instant::now();
+        let State { position, velocity, image, kind, id, .. } = &mut self.state;
+        let mover = Verlet {
+            integrator,
+            step,
+            position: position.axes_mut().map(|axis| Scattered::new(axis)),
+            velocity: velocity.axes_mut().map(|axis| Scattered::new(axis)),
+            force: self.results.force.axes_mut().map(|axis| Scattered::new(axis)),
+            image: Scattered::new(image),
+            kind,
+            id,
+            forces: &forces,
+            positions: &positions,
+        };
+        self.clusters.clusters.advance(&self.physics, &mover);
+        self.account(start.elapsed().as_secs_f64());
+        match forces.first() {
+            Some(particle) => Err(self.diagnose(particle, step)),
+            None => self.check_positions(&positions, step + 1),
+        }
+    }
+}
+
+/// The second half kick of a step, then the first half kick and the drift of the next.
+struct Verlet<'a> {
+    integrator: &'a Integrator,
+    /// The one that ends.
+    step: u64,
+    position: [Scattered<'a, f32>; 3],
+    velocity: [Scattered<'a, f32>; 3],
+    /// Written where it may not be finite.
+    force: [Scattered<'a, f32>; 3],
+    image: Scattered<'a, [i32; 3]>,
+    kind: &'a [u32],
+    id: &'a [u32],
+    forces: &'a NonFiniteWatch,
+    positions: &'a NonFiniteWatch,
+}
+
+impl Mover for Verlet<'_> {
+    #[inline(always)]
+    fn advance(&self, particles: Range<usize>, force: &[[f32; BLOCK]; 3], position: &mut [[f32; BLOCK]; 3]) {
+        // SAFETY: no two blocks have a particle in common, and each is moved once.
+        let ([x, y, z], [vx, vy, vz]) = unsafe { (axes(&self.position, &particles), axes(&self.velocity, &particles)) };
+        let kind = self.kind.get(particles.clone()).unwrap_or(&[]);
+        if let (Some(x), Some(y), Some(z)) = (x.first_chunk_mut(), y.first_chunk_mut(), z.first_chunk_mut())
+            && let (Some(vx), Some(vy), Some(vz)) = (vx.first_chunk_mut(), vy.first_chunk_mut(), vz.first_chunk_mut())
+        {
+            let mut next = (*position, [*vx, *vy, *vz]);
+            let mut inside = true;
+            for (axis, force) in force.iter().enumerate() {
+                inside &= self.integrator.step_many(axis, &mut next.0[axis], &mut next.1[axis], force, kind);
+            }
+            if inside {
+                *position = next.0;
+                ([*x, *y, *z], [*vx, *vy, *vz]) = next;
+                return;
+            }
+        }
+        self.advance_each(particles, force, position);
+    }
+}
+
+impl Verlet<'_> {
+    /// The particles of a block that is not full, or of which some leave the box or are not finite.
+    #[cold]
+    fn advance_each(&self, particles: Range<usize>, force: &[[f32; BLOCK]; 3], position: &mut [[f32; BLOCK]; 3]) {
+        for (lane, i) in particles.enumerate() {
+            // SAFETY: as in `advance`.
+            let at = |of: &[Scattered<'_, f32>; 3]| [0, 1, 2].map(|axis| unsafe { of[axis].range(i..i + 1)[0] });
+            // SAFETY: as in `advance`.
+            let image = unsafe { &mut self.image.range(i..i + 1)[0] };
+            let mut p = Moving { position: at(&self.position), velocity: at(&self.velocity), image: *image };
+            let (force, id) = (force.map(|axis| axis[lane]), self.id[i]);
+            let kind = self.kind.get(i).copied().unwrap_or(0);
+            self.forces.see(force, id);
+            self.integrator.finish(&mut p, force, kind);
+            self.integrator.start(&mut p, force, kind, id, self.step + 1);
+            self.positions.see(p.position, id);
+            *image = p.image;
+            for (axis, force) in force.into_iter().enumerate() {
+                position[axis][lane] = p.position[axis];
+                // SAFETY: as in `advance`.
+                unsafe {
+                    self.position[axis].write(i, p.position[axis]);
+                    self.velocity[axis].write(i, p.velocity[axis]);
+                    self.force[axis].write(i, force);
+                }
+            }
+        }
+    }
+}
+
+/// A range of each array.
+///
+/// # Safety
+/// As for [`Scattered::range`].
+#[inline(always)]
+#[expect(clippy::mut_from_ref, reason = "as for Scattered::range")]
+unsafe fn axes<'a>(of: &'a [Scattered<'_, f32>; 3], range: &Range<usize>) -> [&'a mut [f32]; 3] {
+    // SAFETY: the caller's promise.
+    unsafe { [of[0].range(range.clone()), of[1].range(range.clone()), of[2].range(range.clone())] }
 }

@@ -73,8 +73,8 @@ impl Integrator {
         self.langevin.is_none() && self.speed_limit == f32::INFINITY
     }
 
-    /// First half kick and drift of neighbouring particles. Without types (`kind`) there is only one. Calls `settle` for
-    /// groups of particles of which some may have left the box or are not finite.
+    /// First half kick and drift of neighbouring particles. Without types (`kind`) there is only one. Calls `settle`
+    /// for groups of particles of which some may have left the box or are not finite.
     #[inline(always)]
     pub fn start_many(
         &self,
@@ -105,6 +105,32 @@ impl Integrator {
             }
             at = group.end;
         }
+    }
+
+    /// Second half kick of a step, then first half kick and drift of the next, of neighbouring particles along one
+    /// axis. Whether all are finite and in the box.
+    #[inline(always)]
+    pub fn step_many<const N: usize>(
+        &self,
+        axis: usize,
+        x: &mut [f32; N],
+        v: &mut [f32; N],
+        force: &[f32; N],
+        kind: &[u32],
+    ) -> bool {
+        let mut half_kick = [self.half_kick[0]; N];
+        for (half_kick, &kind) in half_kick.iter_mut().zip(kind) {
+            *half_kick = self.half_kick[kind as usize];
+        }
+        let (lo, hi) = (self.sim_box.lo()[axis], self.sim_box.hi()[axis]);
+        let mut outside = 0;
+        for k in 0..N {
+            v[k] += half_kick[k] * force[k];
+            v[k] += half_kick[k] * force[k];
+            x[k] += self.dt * v[k];
+            outside |= u32::from(!((x[k] >= lo) & (x[k] < hi)));
+        }
+        outside == 0
     }
 
     /// Half kick of neighbouring particles.

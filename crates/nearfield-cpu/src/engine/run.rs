@@ -35,6 +35,8 @@ impl Loaded {
         let rescales = matches!(dynamics.ensemble, Ensemble::Rescale { .. });
         if self.plan.method == Method::RtPerse && !rescales && steps > 0 {
             self.advance_fused(&integrator, from, steps, quantities)?;
+        } else if !rescales && steps > 0 && self.steps_by_clusters(&integrator) {
+            self.advance_clusters(&integrator, from, steps, quantities)?;
         } else {
             for step in from + 1..=from + steps {
                 self.start(&integrator, step)?;
@@ -90,7 +92,7 @@ impl Loaded {
         Ok(())
     }
 
-    fn start(&mut self, integrator: &Integrator, step: u64) -> Result<()> {
+    pub(super) fn start(&mut self, integrator: &Integrator, step: u64) -> Result<()> {
         let start = Instant::now();
         let watch = NonFiniteWatch::default();
         let force = &self.results.force;
@@ -107,7 +109,7 @@ impl Loaded {
         self.check_positions(&watch, step)
     }
 
-    fn finish(&mut self, integrator: &Integrator) {
+    pub(super) fn finish(&mut self, integrator: &Integrator) {
         let start = Instant::now();
         let force = &self.results.force;
         if integrator.has_fast_path() {
@@ -118,7 +120,7 @@ impl Loaded {
         self.report.integrate_seconds += start.elapsed().as_secs_f64();
     }
 
-    fn check_positions(&self, watch: &NonFiniteWatch, step: u64) -> Result<()> {
+    pub(super) fn check_positions(&self, watch: &NonFiniteWatch, step: u64) -> Result<()> {
         let Some(particle) = watch.first() else { return Ok(()) };
         let i = self.state.id.iter().position(|&id| id == particle).expect("ids are a permutation");
         let value = self.state.position.get(i).into_iter().find(|x| !x.is_finite()).unwrap_or(f32::NAN);

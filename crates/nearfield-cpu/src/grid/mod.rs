@@ -143,7 +143,7 @@ impl Structure for Grid {
     }
 
     fn runs(&self, group: &GroupBox, out: &mut Vec<Run>) {
-        self.find_rows(group, out);
+        self.find_rows(group, 0, out);
     }
 }
 

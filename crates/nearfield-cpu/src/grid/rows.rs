@@ -34,8 +34,8 @@ impl Images {
 }
 
 impl Grid {
-    /// Appends the runs of `group`: see [`crate::Structure::runs`].
-    pub(crate) fn find_rows(&self, group: &GroupBox, out: &mut Vec<Run>) {
+    /// Appends the runs of `group`, without pencils that end before slot `from`: see [`crate::Structure::runs`].
+    pub(crate) fn find_rows(&self, group: &GroupBox, from: u32, out: &mut Vec<Run>) {
         let extent = self.extent.max(largest(group.lo)).max(largest(group.hi));
         let farthest = self.layouts.iter().fold(group.radius, |r, layout| r.max(layout.largest));
         let farthest = conservative_range(farthest, extent);
@@ -50,7 +50,7 @@ impl Grid {
                     let hi = std::array::from_fn(|axis| group.hi[axis] - shift[axis]);
                     for layout in &self.layouts {
                         let reach = conservative_range(group.radius.max(layout.largest), extent);
-                        self.find_rows_of_class(layout, lo, hi, reach, image, out);
+                        self.find_rows_of_class(layout, [lo, hi], reach, image, from, out);
                     }
                 }
             }
@@ -79,10 +79,10 @@ impl Grid {
     fn find_rows_of_class(
         &self,
         layout: &Layout,
-        lo: [f32; 3],
-        hi: [f32; 3],
+        [lo, hi]: [[f32; 3]; 2],
         reach: f32,
         image: [i8; 3],
+        from: u32,
         out: &mut Vec<Run>,
     ) {
         let range =
@@ -92,16 +92,19 @@ impl Grid {
         for z in range(1) {
             let first = layout.first + z * layout.n[0] + along_y.start();
             let pencils = &self.pencils[first..first + along_y.clone().count() + 1];
+            if pencils[pencils.len() - 1].slots <= from {
+                continue;
+            }
             for pair in pencils.windows(2) {
                 let (pencil, next) = (&pair[0], &pair[1]);
                 let distance2 = pencil.distance2(lo, hi);
-                if pencil.slots == next.slots || distance2 > reach2 {
+                if pencil.slots == next.slots || next.slots <= from || distance2 > reach2 {
                     continue;
                 }
                 let half_length = (reach2 - distance2).sqrt();
-                let (from, to) = (lo[0] - half_length, hi[0] + half_length);
+                let (least, to) = (lo[0] - half_length, hi[0] + half_length);
                 let n_cells = (next.cells - pencil.cells) as usize;
-                let begin = pencil.cell_of(from);
+                let begin = pencil.cell_of(least);
                 if to < pencil.x0 || begin > n_cells {
                     continue;
                 }

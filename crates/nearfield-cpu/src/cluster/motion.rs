@@ -1,0 +1,298 @@
+//! How particles move while lists last: where they are expected, how far from there they may be, and who has gone
+//! farther.
+//!
+//! A list is made for particles at their *midway*, where their velocities would take them by half of the list's life:
+//! a particle that flies straight on is half as far from there, at most, as it comes to be from where it was. What
+//! counts is that nobody is farther from its midway than its budget, whatever was expected, and that is tested at each
+//! step.
+
+use super::{
+    BLOCK, Moving,
+    blocks::{Blocks, Octet, PAGE},
+};
+use crate::lanes;
+use nearfield_core::predicate::conservative_range;
+use rayon::prelude::*;
+
+/// Evaluations that an inner list is meant to serve.
+const HORIZON: f32 = 5.0;
+
+/// Least part of the budget it wants that a particle must be left by the outer list.
+const LEAST_BUDGET: f32 = 0.25;
+
+/// Most of its limit that a particle may be expected to go in half the life of an outer list.
+const LEAD: f32 = 0.6;
+
+/// What is known of how particles move.
+#[derive(Debug, Default)]
+pub(super) struct Motion {
+    /// Farthest from its midway that a particle may be before the outer list is outrun; negative when nothing may move.
+    limit: f32,
+    /// Budget for what velocities do not foretell.
+    surprise: f32,
+    /// Evaluations that the last outer list served.
+    pub life: u32,
+    since_build: u32,
+    since_prune: u32,
+}
+
+impl Blocks {
+    /// Expects particles somewhere halfway through the life of the outer list that is to be built.
+    pub fn begin_motion(&mut self, moving: Moving, skin: f32) {
+        let motion = &mut self.motion;
+        if motion.since_build > 0 {
+            motion.life = motion.since_build;
+        }
+        (motion.since_build, motion.since_prune) = (0, 0);
+        // What is measured of a displacement is rounded like a coordinate.
+        motion.limit = 0.5 * skin * (1.0 - 1e-5) - conservative_range(0.0, self.extent);
+        motion.surprise = if motion.surprise > 0.0 { motion.surprise } else { 0.01 * self.cutoff };
+        self.lead = LEAD * motion.limit.max(0.0);
+        let (lead, time) = (self.lead, 0.5 * motion.life as f32 * moving.dt);
+        let (first, position) = (&self.first, &self.position);
+        self.midway.par_iter_mut().with_min_len(PAGE).enumerate().for_each(|(b, midway)| {
+            *midway = position[b];
+            let [x, y, z] = moving.velocity.map(|v| &v[first[b] as usize..first[b + 1] as usize]);
+            for (lane, ((x, y), z)) in x.iter().zip(y).zip(z).enumerate() {
+                let time = time.min(lead / (x * x + y * y + z * z).sqrt());
+                for (axis, v) in [x, y, z].into_iter().enumerate() {
+                    midway.0[axis][lane] += time * v;
+                }
+            }
+        });
+    }
+
+    /// Gives each particle a budget of displacement for the next few evaluations, by its velocity and no more than what
+    /// the outer list leaves it. False when that is too little for some particle.
+    pub fn plan_motion(&mut self, moving: Moving) -> bool {
+        let motion = &mut self.motion;
+        // A budget that lasts longer or shorter than meant is too large or too small.
+        if motion.since_prune > 0 {
+            let lasted = motion.since_prune as f32 / HORIZON;
+            motion.surprise *= lasted.recip().clamp(0.9, 1.2);
+        }
+        motion.since_prune = 0;
+        let Self { first, position, midway, crossings, period, budget, midway_of_inner, motion, .. } = self;
+        let (first, position, midway, crossings) = (&*first, &*position, &*midway, &*crossings);
+        let (limit, surprise, period, dt) = (motion.limit, motion.surprise, *period, moving.dt);
+        let pages = budget.par_chunks_mut(PAGE).zip(midway_of_inner.par_chunks_mut(PAGE)).enumerate();
+        let enough = pages.map(|(page, (budget, midway_of_inner))| {
+            let blocks = page * PAGE..page * PAGE + budget.len();
+            let (position, midway) = (&position[blocks.clone()], &midway[blocks.clone()]);
+            let (first, crossings) = (&first[blocks.start..=blocks.end], &crossings[blocks]);
+            let velocity = moving.velocity;
+            let plan = Plan {
+                first,
+                velocity,
+                position,
+                midway,
+                crossings,
+                period,
+                limit,
+                surprise,
+                dt,
+                budget,
+                midway_of_inner,
+            };
+            super::isa().run(plan)
+        });
+        enough.reduce(|| true, |a, b| a & b)
+    }
+
+    /// Pages of blocks, to be given new positions.
+    pub fn pages(&mut self) -> impl IndexedParallelIterator<Item = Page<'_>> {
+        self.motion.since_build += 1;
+        self.motion.since_prune += 1;
+        let Self { first, midway, midway_of_inner, budget, period, position, crossings, crossed, .. } = self;
+        let (first, midway, midway_of_inner, budget) = (&*first, &*midway, &*midway_of_inner, &*budget);
+        let period = *period;
+        let pages = position.par_chunks_mut(PAGE).zip(crossings.par_chunks_mut(PAGE)).zip(crossed.par_chunks_mut(PAGE));
+        pages.enumerate().map(move |(page, ((position, crossings), crossed))| {
+            let blocks = page * PAGE..page * PAGE + position.len();
+            Page {
+                start: blocks.start,
+                first: &first[blocks.start..=blocks.end],
+                midway: &midway[blocks.clone()],
+                midway_of_inner: &midway_of_inner[blocks.clone()],
+                budget: &budget[blocks],
+                period,
+                position,
+                crossings,
+                crossed,
+            }
+        })
+    }
+
+    /// Takes new positions of the same particles. Whether none has used up its budget.
+    pub fn refresh(&mut self, position: [&[f32]; 3]) -> bool {
+        let kept = self.pages().map(|page| super::isa().run(Refresh { page, position }));
+        kept.reduce(|| true, |a, b| a & b)
+    }
+}
+
+/// See [`Blocks::plan_motion`].
+struct Plan<'a> {
+    first: &'a [u32],
+    velocity: [&'a [f32]; 3],
+    position: &'a [Octet],
+    midway: &'a [Octet],
+    crossings: &'a [Octet],
+    period: [f32; 3],
+    limit: f32,
+    surprise: f32,
+    dt: f32,
+    budget: &'a mut [[f32; BLOCK]],
+    midway_of_inner: &'a mut [Octet],
+}
+
+impl lanes::Kernel for Plan<'_> {
+    /// Whether every particle has budget enough.
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<L: lanes::Lanes>(self, _: L) -> bool {
+        let (horizon, mut enough) = (HORIZON * self.dt, true);
+        for k in 0..self.position.len() {
+            let particles = self.first[k] as usize..self.first[k + 1] as usize;
+            let n = particles.len();
+            let mut velocity = [[0.0f32; BLOCK]; 3];
+            let (mut speed, mut gone, mut ahead) = ([0.0f32; BLOCK], [0.0f32; BLOCK], [0.0f32; BLOCK]);
+            for axis in 0..3 {
+                let v = &mut velocity[axis];
+                copy(&self.velocity[axis][particles.clone()], v);
+                for lane in 0..BLOCK {
+                    let x = self.position[k].0[axis][lane] + self.crossings[k].0[axis][lane] * self.period[axis];
+                    let d = x - self.midway[k].0[axis][lane];
+                    let later = d + 0.5 * horizon * v[lane];
+                    speed[lane] += v[lane] * v[lane];
+                    gone[lane] += d * d;
+                    ahead[lane] += later * later;
+                }
+            }
+            let mut time = [0.0f32; BLOCK];
+            let mut short = 0;
+            for lane in 0..BLOCK {
+                let reach = horizon * speed[lane].sqrt();
+                let (wanted, wanted_here) = (0.5 * reach + self.surprise, reach + self.surprise);
+                let (left, left_here) = (self.limit - ahead[lane].sqrt(), self.limit - gone[lane].sqrt());
+                // Who is near its limit is not expected ahead: whoever is may have nothing left where it is.
+                let expected = left >= wanted;
+                time[lane] = if expected { 0.5 * horizon } else { 0.0 };
+                let here = if wanted_here < left_here { wanted_here } else { left_here };
+                let here = if here > 0.0 { here } else { 0.0 };
+                let budget = if expected { wanted } else { here };
+                self.budget[k][lane] = if lane < n { budget } else { f32::INFINITY };
+                let lacks = !expected & (left_here < LEAST_BUDGET * wanted_here) & (lane < n);
+                short |= u32::from(lacks);
+            }
+            for axis in 0..3 {
+                for lane in 0..BLOCK {
+                    let x = self.position[k].0[axis][lane];
+                    self.midway_of_inner[k].0[axis][lane] = x + time[lane] * velocity[axis][lane];
+                }
+            }
+            enough &= short == 0;
+        }
+        enough
+    }
+}
+
+/// Blocks of a page, to be given new positions.
+pub(super) struct Page<'a> {
+    /// First block.
+    pub start: usize,
+    first: &'a [u32],
+    midway: &'a [Octet],
+    midway_of_inner: &'a [Octet],
+    budget: &'a [[f32; BLOCK]],
+    period: [f32; 3],
+    pub position: &'a mut [Octet],
+    crossings: &'a mut [Octet],
+    crossed: &'a mut [bool],
+}
+
+impl Page<'_> {
+    /// Particles of the page's block `k`.
+    #[inline(always)]
+    pub fn particles(&self, k: usize) -> std::ops::Range<usize> {
+        self.first[k] as usize..self.first[k + 1] as usize
+    }
+
+    /// Whether no particle of block `k` has exceeded its budget, with who has crossed a face found out.
+    #[inline(always)]
+    pub fn keeps_to_budget(&mut self, k: usize) -> bool {
+        let mut moved2 = [0.0f32; BLOCK];
+        for axis in 0..3 {
+            for lane in 0..BLOCK {
+                let d = self.position[k].0[axis][lane] - self.midway_of_inner[k].0[axis][lane];
+                moved2[lane] += d * d;
+            }
+        }
+        let mut over = 0;
+        for lane in 0..BLOCK {
+            over |= u32::from(moved2[lane] >= self.budget[k][lane] * self.budget[k][lane]);
+        }
+        // Who crosses a periodic face seems to move far.
+        if over != 0 || self.crossed[k] {
+            return self.count_crossings(k);
+        }
+        true
+    }
+
+    /// Counts the periods that particles of block `k` have crossed since the build. Whether, with them, all keep to
+    /// their budgets.
+    #[cold]
+    fn count_crossings(&mut self, k: usize) -> bool {
+        let mut kept = true;
+        for lane in 0..self.particles(k).len() {
+            let mut moved2 = 0.0;
+            for axis in 0..3 {
+                // The nearest image: whoever moves by half the box has outrun the list either way.
+                let period = self.period[axis];
+                let nearest = |d: f32| if period > 0.0 { -(d / period).round() } else { 0.0 };
+                let x = self.position[k].0[axis][lane];
+                self.crossings[k].0[axis][lane] = nearest(x - self.midway[k].0[axis][lane]);
+                let d = x - self.midway_of_inner[k].0[axis][lane];
+                let d = d + nearest(d) * period;
+                moved2 += d * d;
+            }
+            kept &= moved2 < self.budget[k][lane] * self.budget[k][lane];
+        }
+        self.crossed[k] = self.crossings[k] != Octet::default();
+        kept
+    }
+}
+
+/// Copies the positions of a page. Gives whether all particles keep to their budgets.
+struct Refresh<'a> {
+    page: Page<'a>,
+    position: [&'a [f32]; 3],
+}
+
+impl lanes::Kernel for Refresh<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<L: lanes::Lanes>(self, _: L) -> bool {
+        let Self { mut page, position } = self;
+        let mut kept = true;
+        for k in 0..page.position.len() {
+            let particles = page.particles(k);
+            for axis in 0..3 {
+                copy(&position[axis][particles.clone()], &mut page.position[k].0[axis]);
+            }
+            kept &= page.keeps_to_budget(k);
+        }
+        kept
+    }
+}
+
+/// Copies up to eight values.
+#[inline(always)]
+fn copy(from: &[f32], to: &mut [f32; BLOCK]) {
+    if let Ok(whole) = <&[f32; BLOCK]>::try_from(from) {
+        *to = *whole;
+    } else {
+        to[..from.len()].copy_from_slice(from);
+    }
+}
