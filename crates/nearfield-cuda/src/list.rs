@@ -9,6 +9,8 @@ pub struct DeviceList {
     scan: Scan,
     /// Entries of each row, which kernels count and, where several write a row, count down again as they fill it.
     pub(crate) count: Buffer<u32>,
+    /// Input index of each slot's particle, where lists are made by cells.
+    pub(crate) number: Buffer<u32>,
     /// Row starts, `[n + 1]`.
     pub offset: Buffer<u64>,
     /// Neighbours, in no particular order within a row.
@@ -23,6 +25,7 @@ impl DeviceList {
         Self {
             scan: Scan::new(gpu),
             count: Buffer::new(gpu, "neighbour counts"),
+            number: Buffer::new(gpu, "input indices in cell order"),
             offset: Buffer::new(gpu, "row starts"),
             index: Buffer::new(gpu, "the neighbour list"),
             image: Buffer::new(gpu, "images of the neighbour list"),
@@ -54,6 +57,7 @@ impl DeviceList {
 
     /// Bytes held on the device.
     pub fn bytes(&self) -> u64 {
-        self.scan.bytes() + self.count.bytes() + self.offset.bytes() + self.index.bytes() + self.image.bytes()
+        let of_rows = self.count.bytes() + self.number.bytes() + self.offset.bytes();
+        self.scan.bytes() + of_rows + self.index.bytes() + self.image.bytes()
     }
 }

@@ -112,26 +112,45 @@ fn lennard_jones_liquids_follow_the_trajectory_of_all_pairs() {
     let systems =
         [(cases::liquid(5, 1.0, 0.05, 2.5, 1), Variant::List), (wca, Variant::List), (gas, Variant::SparseList)];
     for (system, variant) in systems {
-        let mut ends = [Method::Brute, Method::Cluster].map(|method| {
-            let mut engine = loaded(&system, &Plan::new(method));
-            engine.advance(&Dynamics::nve(0.004), 0, 60, Quantities::FORCES).expect("a run");
-            if method == Method::Cluster {
-                assert_eq!(engine.cluster_variant(), Some(variant));
-                assert!(engine.report().list_builds < 30, "{:?}", engine.report());
-            }
-            let mut end = Particles::default();
-            engine.snapshot(&mut end).expect("a copy");
-            end
-        });
-        let [expected, found] = &mut ends;
-        for i in 0..expected.len() {
-            let (a, b) = (expected.velocity.get(i), found.velocity.get(i));
-            assert!(
-                (0..3).all(|axis| (a[axis] - b[axis]).abs() < 2e-3),
-                "{variant}: particle {i} has {b:?}, not {a:?}"
-            );
-        }
+        let engine = follows_all_pairs(&system, &Plan::new(Method::Cluster), 2e-3);
+        assert_eq!(engine.cluster_variant(), Some(variant));
+        assert!(engine.report().list_builds < 30, "{:?}", engine.report());
     }
+}
+
+/// Cells that hold about one particle, where forces and steps are one kernel.
+fn particles_with_few_neighbors_follow_the_trajectory_of_all_pairs() {
+    let mut gas = cases::lattice(6, 4.0, 1.5, [Boundary::Periodic; 3]);
+    gas.interaction = Interaction::lennard_jones();
+    cases::thermalize(&mut gas, 4.0, &mut cases::rng(4));
+    let soft = BOUNDARIES.map(|boundary| {
+        let mut system = moving(500, 20.0, boundary, 1.3, 3.0, 7);
+        system.interaction.types[0].epsilon = 5.0;
+        system
+    });
+    for system in [gas].into_iter().chain(soft) {
+        follows_all_pairs(&system, &Plan::new(Method::Cell), 2e-3);
+        let engine = follows_all_pairs(&system, &Plan { skin: 0.0, ..Plan::new(Method::Cluster) }, 2e-3);
+        assert_eq!(engine.cluster_variant(), Some(Variant::Pairs));
+    }
+}
+
+/// Compares velocities after a run with those of a run that tests all pairs.
+fn follows_all_pairs(system: &System, plan: &Plan, tolerance: f32) -> CudaEngine {
+    let run = |plan| {
+        let mut engine = loaded(system, plan);
+        engine.advance(&Dynamics::nve(0.004), 0, 60, Quantities::FORCES).expect("a run");
+        let mut end = Particles::default();
+        engine.snapshot(&mut end).expect("a copy");
+        (engine, end.velocity)
+    };
+    let ((_, expected), (engine, found)) = (run(&Plan::new(Method::Brute)), run(plan));
+    for i in 0..expected.len() {
+        let (a, b) = (expected.get(i), found.get(i));
+        let same = (0..3).all(|axis| (a[axis] - b[axis]).abs() < tolerance);
+        assert!(same, "{}: particle {i} has {b:?}, not {a:?}", plan.method);
+    }
+    engine
 }
 
 fn steps_recorded_one_by_one_are_those_of_lists() {
@@ -160,13 +179,17 @@ fn a_list_beyond_the_budget_is_not_kept() {
 }
 
 fn main() {
-    let tests: [(&str, fn()); 6] = [
+    let tests: [(&str, fn()); 7] = [
         ("lists_of_any_age_hold_every_pair", lists_of_any_age_hold_every_pair),
         ("sparse_lists_of_any_age_hold_every_pair", sparse_lists_of_any_age_hold_every_pair),
         ("pairs_are_found_once_in_dense_systems", pairs_are_found_once_in_dense_systems),
         (
             "lennard_jones_liquids_follow_the_trajectory_of_all_pairs",
             lennard_jones_liquids_follow_the_trajectory_of_all_pairs,
+        ),
+        (
+            "particles_with_few_neighbors_follow_the_trajectory_of_all_pairs",
+            particles_with_few_neighbors_follow_the_trajectory_of_all_pairs,
         ),
         ("steps_recorded_one_by_one_are_those_of_lists", steps_recorded_one_by_one_are_those_of_lists),
         ("a_list_beyond_the_budget_is_not_kept", a_list_beyond_the_budget_is_not_kept),

@@ -19,3 +19,9 @@ KERNEL(cell_scatter, SortArgs, 256) {
     a.grid.slot[slot] = a.position[i];
     a.grid.particle[slot] = i;
 }
+
+// So that who meets a slot need not look for its particle's number in two places.
+KERNEL(number_slots, NumberArgs, 256) {
+    const u32 slot = thread_index();
+    if (slot < a.n) a.number[slot] = a.id[a.particle[slot]];
+}

@@ -3,8 +3,7 @@
 #include "listed.cuh"
 
 // Entries that a warp keeps before it writes them, all but the last chunk full.
-#define STAGE 512
-#define FULL_STAGE (STAGE - WARP)
+#define STAGE (SEGMENT_ENTRIES + WARP)
 
 // A candidate is listed if it is near any particle of the cluster, now or before the list is built anew; once, whatever
 // its images near the cluster are.
@@ -12,21 +11,68 @@ struct Listing : Cluster {
     const ClusterListArgs& a;
     u32* stage;
     u32 count, staged;
-    u32 segment; // that is filled next
-    bool crowded, near_face;
+    u32 segment;  // that is filled next
+    bool apart;   // particles are searched for one by one, or some candidate may be near two of them at two images
+    bool by_pair; // see `Segment`
+    bool far;     // neither the cluster nor candidates may cross a face
+    float reach2; // square of the range, skin and slack included
 
     __device__ Listing(const ClusterListArgs& arguments, const ClusterPlace& place, u32 number, u32* entries)
         : a(arguments), stage(entries), count(place.count), staged(0), segment(number) {
         load(a.law, a.grid.slot, place);
+        if (a.once) least = first;
         const Bounds box = cluster_bounds(x);
-        crowded = near_face = false;
+        const float reach = cutoff + a.slack;
+        reach2 = reach * reach;
+        apart = is_spread(box, a.grid.classes[0], a.grid.classes[0].largest);
+        by_pair = false;
+        far = true;
         for (int axis = 0; axis < 3; ++axis) {
             if (a.space.boundary[axis] != 0) continue;
-            const float extent = box.hi[axis] - box.lo[axis], reach = 2.0f * (cutoff + a.slack);
-            // Two images of one candidate may be near two particles.
-            crowded = crowded || !((extent + reach) * RANGE_MARGIN < a.space.length[axis]);
-            near_face = near_face || is_near_face(axis, box.lo[axis]) || is_near_face(axis, box.hi[axis]);
+            const float extent = box.hi[axis] - box.lo[axis], length = a.space.length[axis];
+            const float to_face = smaller(box.lo[axis] - a.space.lo[axis], a.space.hi[axis] - box.hi[axis]);
+            apart = apart || !((extent + 2.0f * reach) * RANGE_MARGIN < length);
+            by_pair = by_pair || to_face <= a.margin || !(2.0f * (extent + reach) * RANGE_MARGIN < length);
+            far = far && to_face > reach + a.margin;
         }
+        by_pair = by_pair || apart;
+        if (!apart) list_own();
+    }
+
+    // Entries that need care for being the particles themselves are in one chunk, the first.
+    __device__ void list_own() {
+        const u32 lane = threadIdx.x % WARP;
+        const float4 own = slots[first + smaller(lane, count - 1)];
+        bool near = false;
+#pragma unroll
+        for (u32 k = 0; k < CLUSTER; ++k) near = near | ((k != lane) & (k < count) & (distance2(own, k) < reach2));
+        append(first + lane, near && lane < count, true);
+    }
+
+    __device__ float distance2(const float4& p, u32 k) const {
+        return squared_length(p.x - x[k].x, p.y - x[k].y, p.z - x[k].z);
+    }
+
+    __device__ void meet(const Candidate& c) {
+        if (apart) {
+            append(c.slot, c.valid && is_listed(c.slot, c.x, c.image), true);
+            return;
+        }
+        const bool care = c.image != HOME_IMAGE || (!far && is_near_face(c.x));
+        // The margins cover that this is not rounded as pairs are.
+        float4 xj = c.x;
+        if (c.image != HOME_IMAGE) {
+            const Shift shift = shift_of(a.space, c.image);
+            xj = make_float4(xj.x + shift.x, xj.y + shift.y, xj.z + shift.z, xj.w);
+        }
+        float least = infinity();
+#pragma unroll
+        for (u32 k = 0; k < CLUSTER; ++k) least = fminf(least, distance2(xj, k));
+        append(c.slot, c.valid && least < reach2 && c.slot - first >= count, care);
+    }
+
+    __device__ bool is_near_face(const float4& p) const {
+        return is_near_face(0, p.x) || is_near_face(1, p.y) || is_near_face(2, p.z);
     }
 
     __device__ bool is_near_face(int axis, float v) const {
@@ -34,42 +80,28 @@ struct Listing : Cluster {
                (v - a.space.lo[axis] <= a.margin || a.space.hi[axis] - v <= a.margin);
     }
 
-    __device__ void meet(u32 slot, bool valid, u32 image) {
-        if (crowded) {
-            list<NEAREST>(slot, valid, image);
-        } else if (__any_sync(ALL_LANES, valid && image != HOME_IMAGE)) {
-            list<SHIFTED>(slot, valid, image);
-        } else {
-            list<HOME>(slot, valid, image);
-        }
-    }
-
-    template <Images IMAGES> __device__ void list(u32 slot, bool valid, u32 image) {
-        const float4 xj = slots[slot];
-        Shift shift = {0.0f, 0.0f, 0.0f};
-        if (IMAGES == SHIFTED && image != HOME_IMAGE) shift = shift_of(a.space, image);
+    // Whether this image is that at which the first of the particles near the candidate sees it, and that particle is
+    // searched for: so it is listed once.
+    __device__ bool is_listed(u32 slot, const float4& xj, u32 image) const {
         const u32 own = slot - first;
         u32 nearest = image, near = 0;
 #pragma unroll
         for (int k = CLUSTER - 1; k >= 0; --k) {
-            u32 at = image;
-            const Shift d = separation<IMAGES>(a.space, x[k], xj, shift, at);
-            if (squared_length(d.x, d.y, d.z) < cutoff * cutoff && own != k && k < count) {
+            const Shift d = separation<NEAREST>(a.space, x[k], xj, {0.0f, 0.0f, 0.0f});
+            if (squared_length(d.x, d.y, d.z) < reach2 && own != k && k < count) {
                 near |= 1u << k;
-                nearest = at;
+                nearest = nearest_image(a.space, x[k], xj);
             }
         }
-        // The first of the particles that it is near decides when it is listed, if each is searched for by itself.
-        const bool listed = valid && (near & (0u - near) & active) != 0 && nearest == image;
+        return (near & (0u - near) & active) != 0 && nearest == image;
+    }
+
+    __device__ void append(u32 slot, bool listed, bool care) {
         const u32 votes = __ballot_sync(ALL_LANES, listed);
-        if (listed) {
-            const bool care = crowded || near_face || image != HOME_IMAGE || own < count || is_near_face(0, xj.x) ||
-                              is_near_face(1, xj.y) || is_near_face(2, xj.z);
-            stage[staged + __popc(votes & lanes_below())] = slot | (care ? LISTED_CARE : 0);
-        }
+        if (listed) stage[staged + __popc(votes & lanes_below())] = slot | (care ? LISTED_CARE : 0);
         staged += __popc(votes);
         __syncwarp();
-        if (staged > FULL_STAGE) write(FULL_STAGE, false);
+        if (staged > SEGMENT_ENTRIES) write(SEGMENT_ENTRIES, false);
     }
 
     // The rest of the list.
@@ -87,7 +119,7 @@ struct Listing : Cluster {
         if (lane == 0) {
             if (chunks > 0) begin = atomicAdd(&a.control->chunks, chunks);
             if (!last) next = a.n_clusters + atomicAdd(&a.control->segments, 1u);
-            if (segment < a.segment_capacity) a.segment[segment] = {begin, begin + chunks, next, 0};
+            if (segment < a.segment_capacity) a.segment[segment] = {begin, begin + chunks, next, by_pair};
         }
         begin = __shfl_sync(ALL_LANES, begin, 0);
         segment = __shfl_sync(ALL_LANES, next, 0);
@@ -108,7 +140,7 @@ KERNEL_MIN_BLOCKS(list_clusters, ClusterListArgs, WARPS_PER_BLOCK* WARP, 6) {
     __shared__ Scratch scratch[WARPS_PER_BLOCK];
     __shared__ u32 stage[WARPS_PER_BLOCK][STAGE];
     const u32 number = thread_index() / WARP, warp = threadIdx.x / WARP;
-    const ClusterPlace cluster = find_cluster(a.grid, a.n, number);
+    const ClusterPlace cluster = consecutive_cluster(a.n, number);
     if (cluster.count == 0) return;
     Listing listing(a, cluster, number, stage[warp]);
     search_cells<false>(a.grid, a.space, a.slack, cluster, cluster_bounds(listing.x), scratch[warp], listing);

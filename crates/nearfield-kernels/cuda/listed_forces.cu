@@ -4,11 +4,12 @@
 #include "listed.cuh"
 
 template <class L, bool EXACT, bool ENERGY> __device__ inline void listed_forces(const ListedArgs& a) {
+    __shared__ u32 entries[WARPS_PER_BLOCK * SEGMENT_ENTRIES];
     const u32 number = thread_index() / WARP;
     const ClusterPlace cluster = consecutive_cluster(a.gather.n, number);
     if (cluster.count == 0) return;
     Gather<L, EXACT, ENERGY, NO_IMAGE> gather(a.gather, cluster);
-    meet_listed(a, number, gather);
+    meet_listed(a, number, entries, gather);
     gather.store();
 }
 

@@ -4,7 +4,7 @@
 
 template <class V, bool WITHIN> __device__ inline void list_by_cells(const ListArgs& a) {
     __shared__ Scratch scratch[WARPS_PER_BLOCK];
-    const ClusterPlace cluster = find_cluster(a.grid, a.n, thread_index() / WARP);
+    const ClusterPlace cluster = own_cluster<WITHIN>(a.grid, a.n);
     if (cluster.count == 0) return;
     V lister(a, cluster);
     search_cells<WITHIN>(a.grid, a.space, a.slack, cluster, cluster_bounds(lister.x), scratch[threadIdx.x / WARP],
@@ -20,7 +20,7 @@ template <class V> __device__ inline void list_all(const ListArgs& a) {
     lister.store(cluster);
 }
 
-KERNEL_MIN_BLOCKS(cell_list_count, ListArgs, WARPS_PER_BLOCK* WARP, 6) {
+KERNEL_MIN_BLOCKS(cell_list_count, ListArgs, WARPS_PER_BLOCK* WARP, 7) {
     list_by_cells<ListCount<false, false>, false>(a);
 }
 

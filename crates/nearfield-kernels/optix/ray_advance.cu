@@ -10,22 +10,9 @@ PARAMETERS(AdvanceRays)
 
 // Not inlined: half a module's code, the same in all programs.
 __device__ __noinline__ void move_particle(u32 i, float4 force) {
-    const Particles& from = params.rays.particles;
-    const u32 id = from.id[i];
-    Moving p = load_moving(from, i);
-    // A particle that has failed is left where it was, so that coordinates stay finite until the run is stopped.
-    params.position[i] = p.position;
-    if (!all_finite(force)) {
-        atomicMin(&params.status->force, failure(params.step, id));
-        return;
-    }
-    finish_step(params.integrator, p, force);
-    start_step(params.integrator, p, force, id, params.step + 1);
-    if (!all_finite(p.position)) {
-        atomicMin(&params.status->position, failure(params.step + 1, id));
-        return;
-    }
-    Particles to = from;
+    Particles to = params.rays.particles;
+    Moving p = load_moving(to, i);
+    advance(params.integrator, params.status, to.id, i, params.step, p, force);
     to.position = params.position;
     store_moving(to, i, p);
 }

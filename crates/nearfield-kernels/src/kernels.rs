@@ -3,9 +3,10 @@
 use crate::{
     ByForce, Kernel, Primitive, RayProgram,
     layouts::{
-        AdvanceRays, BodiesArgs, BoundsArgs, BoxesArgs, ClusterListArgs, ClusterStepArgs, ClustersMovedArgs,
-        FinishExactArgs, ForceRays, GatherArgs, IntegrateArgs, ListArgs, ListRays, ListedArgs, MortonArgs, MotionArgs,
-        PermuteArgs, RescaleArgs, RowsArgs, SampleArgs, ScanArgs, SortArgs, TotalsArgs,
+        AdvanceRays, BodiesArgs, BoundsArgs, BoxesArgs, CellStepArgs, ClusterListArgs, ClusterStepArgs,
+        ClustersMovedArgs, FinishExactArgs, ForceRays, GatherArgs, IntegrateArgs, ListArgs, ListRays, ListedArgs,
+        MortonArgs, MotionArgs, NumberArgs, PermuteArgs, RescaleArgs, RowsArgs, SampleArgs, ScanArgs, SortArgs,
+        TotalsArgs,
     },
 };
 
@@ -45,6 +46,8 @@ pub const SCAN_TILE: usize = 2048;
 pub const CELL_COUNT: Kernel<SortArgs> = Kernel::new("cells", "cell_count", 256);
 /// Particles in the order of cells.
 pub const CELL_SCATTER: Kernel<SortArgs> = Kernel::new("cells", "cell_scatter", 256);
+/// Input indices in the order of cells.
+pub const NUMBER_SLOTS: Kernel<NumberArgs> = Kernel::new("cells", "number_slots", 256);
 
 /// Particles that a warp takes at a time.
 pub const CLUSTER: usize = 8;
@@ -58,6 +61,11 @@ pub const CELL_FORCES: ByForce<Kernel<GatherArgs>> = ByForce {
     exact: Kernel::new("cell_forces", "cell_exact", 128),
     exact_energy: Kernel::new("cell_forces", "cell_exact_energy", 128),
 };
+
+/// Forces and a step, by cells where most particles have no neighbours and one cutoff serves all pairs; a thread for each
+/// particle. In f32 and without energies.
+pub const CELL_STEP: ByForce<Kernel<CellStepArgs>> =
+    steps(Kernel::new("cell_step", "cell_step_uniform", 128), Kernel::new("cell_step", "cell_step_any", 128));
 
 /// Forces from candidates in cells, each pair found once and added to zeros, but for sums that do not depend on order.
 pub const CLUSTER_FORCES: ByForce<Kernel<GatherArgs>> = ByForce {
@@ -85,29 +93,24 @@ pub const LISTED_FORCES: ByForce<Kernel<ListedArgs>> = ByForce {
     exact_energy: Kernel::new("listed_forces", "listed_exact_energy", 128),
 };
 
-/// Kernels that make a step by lists of clusters.
-#[derive(Clone, Copy)]
-pub struct StepKernels {
-    /// For plain Lennard-Jones.
-    pub uniform_lj: Kernel<ClusterStepArgs>,
-    /// For any interaction.
-    pub any: Kernel<ClusterStepArgs>,
-    /// Clusters that a warp takes.
-    pub clusters: usize,
-}
+/// The same from lists that hold each pair once, added to zeros, but for sums that do not depend on order.
+pub const LISTED_PAIRS: ByForce<Kernel<ListedArgs>> = ByForce {
+    uniform_lj: Kernel::new("listed_pairs", "pairs_uniform", 128),
+    scaled_lj: Kernel::new("listed_pairs", "pairs_any", 128),
+    fast: Kernel::new("listed_pairs", "pairs_any", 128),
+    energy: Kernel::new("listed_pairs", "pairs_any_energy", 128),
+    ..LISTED_FORCES
+};
+/// A step by the forces of [`LISTED_PAIRS`], which become zero.
+pub const MOVE_LISTED: Kernel<ClusterStepArgs> = Kernel::new("listed_pairs", "move_listed", 256);
 
-/// Steps where clusters have many neighbours.
-pub const STEP: StepKernels = StepKernels {
-    uniform_lj: Kernel::new("cluster_step", "step_uniform", 128),
-    any: Kernel::new("cluster_step", "step_any", 128),
-    clusters: 1,
-};
-/// Steps where most clusters have none.
-pub const STEP_SPARSE: StepKernels = StepKernels {
-    uniform_lj: Kernel::new("cluster_step", "step_sparse_uniform", 128),
-    any: Kernel::new("cluster_step", "step_sparse_any", 128),
-    clusters: 4,
-};
+/// Forces and a step, by lists most of which are empty; a thread for each particle. In f32 and without energies.
+pub const STEP_SPARSE: ByForce<Kernel<ClusterStepArgs>> =
+    steps(Kernel::new("cluster_step", "step_sparse_uniform", 128), Kernel::new("cluster_step", "step_sparse_any", 128));
+
+const fn steps<A>(uniform_lj: Kernel<A>, any: Kernel<A>) -> ByForce<Kernel<A>> {
+    ByForce { fast: any, energy: any, exact: any, exact_energy: any, uniform_lj, scaled_lj: any }
+}
 
 /// Forces by testing all pairs; a warp for each [`CLUSTER`].
 pub const BRUTE_FORCES: ByForce<Kernel<GatherArgs>> = ByForce {

@@ -7,8 +7,8 @@ const DENSE: f64 = 300.0;
 /// Expected neighbours below which most clusters have none, so that moving the particles is the work.
 const SPARSE: f64 = 1.0;
 
-/// Most particles whose numbers entries of lists can hold, beside a bit.
-const MOST_LISTED: usize = (1 << 31) - 1;
+/// Most particles whose numbers entries of lists can hold, beside two bits.
+const MOST_LISTED: usize = 1 << 30;
 
 /// How pairs are found and used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -9,8 +9,8 @@ use crate::{
 use bytemuck::Zeroable;
 use nearfield_core::{Report, Result};
 use nearfield_kernels::{
-    Float4, Ptr,
-    kernels::{self, CLUSTER, LISTED_FORCES, SEGMENT, StepKernels},
+    Float4, Kernel, Ptr,
+    kernels::{self, CLUSTER, LISTED_FORCES, LISTED_PAIRS, SEGMENT, STEP_SPARSE},
     layouts::{
         self, ClusterControl, ClusterListArgs, ClusterStepArgs, ClustersMovedArgs, GatherArgs, Integrator, Law,
         ListedArgs, Results, Segment, Status,
@@ -23,8 +23,8 @@ const CHUNK: u64 = 32;
 
 const BYTES_PER_CHUNK: u64 = CHUNK * size_of::<u32>() as u64;
 
-/// Chunks of a cluster for which there is room at first.
-const FIRST_CHUNKS: u64 = 8;
+/// Chunks of a cluster for which there is room at first, of lists that hold each pair once and of those of both sides.
+const FIRST_CHUNKS: [u64; 2] = [5, 8];
 
 /// Steps that a list is first thought to serve for.
 const FIRST_LIFE: u64 = 8;
@@ -34,6 +34,13 @@ const SPARE_STEPS: u64 = 2;
 
 /// Most steps enqueued at a time.
 const MOST_STEPS: u64 = 100;
+
+/// Clusters to a warp that adds both sides of pairs, where there are many: fewer and longer blocks share caches better,
+/// and launches that are forbidden cost less.
+const MOST_PER_WARP: usize = 8;
+
+/// Warps below which there are not enough to share work among.
+const ENOUGH_WARPS: usize = 25_000;
 
 /// Lists for the particles in memory order, of everything within range and skin.
 pub(crate) struct ClusterList {
@@ -45,6 +52,8 @@ pub(crate) struct ClusterList {
     entry: Buffer<u32>,
     control: Buffer<ClusterControl>,
     valid: bool,
+    /// Whether it holds each pair once.
+    once: bool,
     /// Whether it is known that there was room for the list.
     settled: bool,
     /// Whether the list serves the present positions, where that is known without looking at them.
@@ -59,11 +68,10 @@ pub(crate) struct ClusterList {
 pub(crate) struct StepQuery<'a> {
     pub physics: &'a Physics,
     pub state: &'a mut State,
-    /// Where positions go.
-    pub next: &'a mut Buffer<Float4>,
+    /// Room for positions or forces.
+    pub spare: &'a mut Buffer<Float4>,
     pub integrator: Integrator,
     pub status: Ptr<Status>,
-    pub kernels: StepKernels,
 }
 
 impl ClusterList {
@@ -85,6 +93,7 @@ impl ClusterList {
             entry: Buffer::new(gpu, "lists of clusters"),
             control: Buffer::new(gpu, "lists of clusters"),
             valid: false,
+            once: false,
             settled: false,
             known: None,
             age: 0,
@@ -125,16 +134,19 @@ impl ClusterList {
     }
 
     /// Enqueues the listing of what is near each cluster of particles in the order of `grid`, which was built for range
-    /// and skin. Whether there was room for it is seen later: by [`ClusterList::settle`], or at the end of steps.
+    /// and skin; each pair `once` or from both sides. Whether there was room for it is seen later: by
+    /// [`ClusterList::settle`], or at the end of steps.
     pub fn build(
         &mut self,
         physics: &Physics,
         state: &State,
         grid: &Grid,
+        once: bool,
         budget: u64,
         report: &mut Report,
     ) -> Result<()> {
-        let first = state.len().div_ceil(CLUSTER) as u64 * FIRST_CHUNKS;
+        self.once = once;
+        let first = state.len().div_ceil(CLUSTER) as u64 * FIRST_CHUNKS[usize::from(!once)];
         self.enqueue(physics, state, grid, self.room().max(first).min(budget / BYTES_PER_CHUNK))?;
         report.list_builds += 1;
         if self.age == 1 && self.skin > 0.0 && report.list_builds > 1 {
@@ -190,15 +202,25 @@ impl ClusterList {
             segment_capacity: self.segment.len() as u32,
             slack: grid.slack(),
             margin: 0.5 * self.skin + physics.slack,
+            once: u32::from(self.once),
+            unused: 0,
         };
         // SAFETY: positions are n, sorted by the grid's cells; segments and entries have room for what is said.
         unsafe { launch(&*self.gpu, kernels::LIST_CLUSTERS, 32 * n_clusters as u64, &arguments) }
     }
 
-    /// Enqueues the forces on all particles.
+    /// Whether forces are added to: they must be zero before.
+    pub fn scatters(&self) -> bool {
+        self.once
+    }
+
+    /// Enqueues the forces on all particles. Exact ones take lists of both sides.
     pub fn forces(&self, physics: &Physics, state: &State, results: Results, exact: bool, energy: bool) -> Result<()> {
+        let arguments = self.listed(physics, state, results, 0);
+        if self.once {
+            return self.add_pairs(LISTED_PAIRS.choose(&physics.law, exact, energy), state.len(), &arguments);
+        }
         let kernel = LISTED_FORCES.choose(&physics.law, exact, energy);
-        let arguments = self.listed(physics, state, results);
         let n_clusters = state.len().div_ceil(CLUSTER) as u64;
         // SAFETY: particles and results are n, in the order that the list was made in.
         unsafe { launch(&*self.gpu, kernel, 32 * n_clusters, &arguments) }
@@ -207,28 +229,34 @@ impl ClusterList {
     /// Makes steps from forces at `step` on, at most `most`, at positions that the list serves; waits for the device to
     /// know how many there were. None are made where there was no room for the list: it is to be settled first.
     pub fn steps(&mut self, query: StepQuery, grid: &Grid, step: u64, most: u64) -> Result<u64> {
-        let StepQuery { physics, state, next, integrator, status, kernels } = query;
+        let StepQuery { physics, state, spare, integrator, status } = query;
         let n = state.len();
-        next.resize(n)?;
+        spare.resize(n)?;
+        if self.once {
+            spare.zero()?;
+        }
         let asked = (self.life.saturating_sub(self.age) + SPARE_STEPS).clamp(1, MOST_STEPS.min(most));
-        let kernel = if physics.law.is_plain_lennard_jones() { kernels.uniform_lj } else { kernels.any };
-        let threads = 32 * n.div_ceil(CLUSTER).div_ceil(kernels.clusters) as u64;
         for step in step..step + asked {
+            let force = if self.once { spare.ptr() } else { Ptr::NULL };
             let arguments = ClusterStepArgs {
-                listed: self.listed(physics, state, Results::default()),
+                listed: self.listed(physics, state, Results { force, ..Results::default() }, step),
                 integrator,
                 particles: state.particles(),
-                next: next.ptr(),
+                next: if self.once { state.moving.position.ptr() } else { spare.ptr() },
                 reference: grid.slots(),
                 status,
-                control: self.control.ptr(),
-                step,
                 limit2: self.limit * self.limit,
                 unused: 0,
             };
-            // SAFETY: all arrays of particles have n elements.
-            unsafe { launch(&*self.gpu, kernel, threads, &arguments)? };
-            std::mem::swap(&mut state.moving.position, next);
+            if self.once {
+                self.add_pairs(LISTED_PAIRS.choose(&physics.law, false, false), n, &arguments.listed)?;
+                // SAFETY: all arrays of particles have n elements.
+                unsafe { launch(&*self.gpu, kernels::MOVE_LISTED, n as u64, &arguments)? };
+            } else {
+                // SAFETY: as above.
+                unsafe { launch(&*self.gpu, STEP_SPARSE.choose(&physics.law, false, false), n as u64, &arguments)? };
+                std::mem::swap(&mut state.moving.position, spare);
+            }
         }
         let ClusterControl { rebuild_at, done, chunks, .. } = self.control()?;
         self.settled = u64::from(chunks) <= self.room();
@@ -238,8 +266,8 @@ impl ClusterList {
             (_, true) => done - step + 1,
             (_, false) => 0,
         };
-        if (asked - made) % 2 == 1 {
-            std::mem::swap(&mut state.moving.position, next);
+        if !self.once && (asked - made) % 2 == 1 {
+            std::mem::swap(&mut state.moving.position, spare);
         }
         if made == 0 {
             return Ok(0);
@@ -250,7 +278,14 @@ impl ClusterList {
         Ok(made)
     }
 
-    fn listed(&self, physics: &Physics, state: &State, results: Results) -> ListedArgs {
+    /// Enqueues the addition of forces to zeros, from a list that holds each pair once, unless the list does not serve.
+    fn add_pairs(&self, kernel: Kernel<ListedArgs>, n: usize, arguments: &ListedArgs) -> Result<()> {
+        let clusters = n.div_ceil(CLUSTER);
+        // SAFETY: particles and results are n, in the order that the list was made in.
+        unsafe { launch(&*self.gpu, kernel, 32 * clusters.div_ceil(per_warp(n)) as u64, arguments) }
+    }
+
+    fn listed(&self, physics: &Physics, state: &State, results: Results, step: u64) -> ListedArgs {
         let grid = layouts::Grid { n_classes: 1, slot: state.moving.position.ptr(), ..Default::default() };
         ListedArgs {
             gather: GatherArgs {
@@ -264,6 +299,10 @@ impl ClusterList {
             },
             segment: self.segment.ptr(),
             entry: self.entry.ptr(),
+            control: self.control.ptr(),
+            step,
+            clusters_per_warp: per_warp(state.len()) as u32,
+            unused: 0,
         }
     }
 
@@ -275,4 +314,9 @@ impl ClusterList {
     pub fn bytes(&self) -> u64 {
         self.segment.bytes() + self.entry.bytes() + self.control.bytes()
     }
+}
+
+/// Clusters that a warp takes of `n` particles.
+fn per_warp(n: usize) -> usize {
+    (n.div_ceil(CLUSTER) / ENOUGH_WARPS).clamp(1, MOST_PER_WARP)
 }

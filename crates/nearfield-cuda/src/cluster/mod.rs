@@ -14,11 +14,7 @@ use crate::{
 };
 use list::ClusterList;
 use nearfield_core::{Plan, Report, Result};
-use nearfield_kernels::{
-    Float4,
-    kernels::{self, StepKernels},
-    layouts::Results,
-};
+use nearfield_kernels::{Float4, layouts::Results};
 use std::sync::Arc;
 
 /// Cells, and lists where they pay.
@@ -81,7 +77,8 @@ impl Clusters {
         }
         // Nothing needs the forces any more: they are of positions before.
         state.permute(self.grid.order().ptr(), &mut Buffer::new(&self.gpu, "forces"))?;
-        self.list.build(physics, state, &self.grid, self.memory_budget, report)
+        let once = self.variant == Variant::List && !self.deterministic;
+        self.list.build(physics, state, &self.grid, once, self.memory_budget, report)
     }
 
     /// Makes sure that there is a list where there is to be one, or turns to pairs where it would exceed the budget. To
@@ -99,7 +96,7 @@ impl Clusters {
 
     /// Whether forces are added to: results must be zero before, and order-independent sums be finished after.
     pub(crate) fn scatters(&self) -> bool {
-        !self.variant.uses_list() && self.candidates().scatters(self.pairs())
+        if self.variant.uses_list() { self.list.scatters() } else { self.candidates().scatters(self.pairs()) }
     }
 
     /// Enqueues the forces at positions that it was built for or [`Clusters::is_fresh`] of.
@@ -128,14 +125,14 @@ impl Clusters {
         unsafe { grid::forces(&*self.gpu, self.candidates(), &query) }
     }
 
-    /// The kernels that step by the list.
-    pub(crate) fn step_kernels(&self) -> StepKernels {
-        if self.variant == Variant::SparseList { kernels::STEP_SPARSE } else { kernels::STEP }
+    /// The list, for steps by it.
+    pub(crate) fn list_and_grid(&mut self) -> (&mut ClusterList, &Grid) {
+        (&mut self.list, &self.grid)
     }
 
-    /// The list, for steps by it.
-    pub(crate) fn list_and_grid(&mut self) -> Option<(&mut ClusterList, &Grid)> {
-        self.variant.uses_list().then_some((&mut self.list, &self.grid))
+    /// The cells, where there is no list.
+    pub(crate) fn cells(&self) -> Option<&Grid> {
+        (!self.variant.uses_list()).then_some(&self.grid)
     }
 
     fn pairs(&self) -> Pairs {

@@ -6,7 +6,11 @@ use super::{
     order::{self, MortonOrder},
     structure::Query,
 };
-use crate::{cluster::StepQuery, grid::Grid, tracing::Step};
+use crate::{
+    cluster::StepQuery,
+    grid::{self, CellStep, Grid},
+    tracing::Step,
+};
 use nearfield_core::{
     Order, Quantities, Result, StepCost,
     maintenance::{Action, Motion},
@@ -48,20 +52,23 @@ impl Loaded {
         self.account(1)
     }
 
-    /// Forces at the positions of `step`, and steps by them: as many as one list serves for and `before` allows, or none
-    /// where `cluster` keeps no list. Gives the step whose positions the particles are at then.
+    /// Forces at the positions of `step`, and steps by them: as many as one list of clusters serves for and `before`
+    /// allows, one by cells where most particles have no neighbours, else none. Gives the step whose positions the
+    /// particles are at then.
     pub fn evaluate_and_step(&mut self, integrator: &Integrator, step: u64, before: u64) -> Result<u64> {
         self.prepare(step)?;
         loop {
+            if self.step_by_cells(integrator, step)? {
+                return Ok(step + 1);
+            }
             let Self { physics, state, structure, next_position, totalizer, report, .. } = self;
-            let clusters = structure.clusters_mut().expect("only clusters step by lists");
-            let kernels = clusters.step_kernels();
-            let Some((list, grid)) = clusters.list_and_grid() else {
+            let Some(clusters) = structure.clusters_mut().filter(|clusters| clusters.cells().is_none()) else {
                 self.query(Quantities::FORCES)?;
                 return Ok(step);
             };
+            let (list, grid) = clusters.list_and_grid();
             let (integrator, status) = (integrator.layout(), totalizer.status().ptr());
-            let query = StepQuery { physics, state, next: next_position, integrator, status, kernels };
+            let query = StepQuery { physics, state, spare: next_position, integrator, status };
             let made = list.steps(query, grid, step, before - step)?;
             if made > 0 {
                 self.account(made)?;
@@ -69,6 +76,21 @@ impl Loaded {
             }
             clusters.settle(physics, state, report)?;
         }
+    }
+
+    /// A step by sparse cells of the present positions, where there are any.
+    fn step_by_cells(&mut self, integrator: &Integrator, step: u64) -> Result<bool> {
+        let Some(grid) = self.structure.sparse_cells() else { return Ok(false) };
+        let step = CellStep {
+            integrator: integrator.layout(),
+            particles: self.state.particles(),
+            status: self.totalizer.status().ptr(),
+            number: step,
+        };
+        // SAFETY: the cells are of the present positions, and arrays of particles have n elements each.
+        unsafe { grid::step(&*self.gpu, grid, &self.physics.law, &step)? };
+        self.account(1)?;
+        Ok(true)
     }
 
     /// Books evaluations whose query has been enqueued.

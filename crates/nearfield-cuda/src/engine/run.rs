@@ -21,10 +21,10 @@ impl Loaded {
             self.forces_valid = false;
             self.move_all(&integrator, Half::Start, from)?;
             let fused = self.plan.method == Method::RtPerse && !integrator.rescales();
-            let by_list = self.steps_by_list() && !integrator.rescales();
+            let at_once = self.steps_at_once() && !integrator.rescales();
             let mut step = from + 1;
             while step < last {
-                if by_list {
+                if at_once {
                     let reached = self.evaluate_and_step(&integrator, step, last)?;
                     if reached > step {
                         step = reached;
@@ -47,10 +47,10 @@ impl Loaded {
         self.totals(quantities, from + steps)
     }
 
-    /// Whether forces and steps are computed together where there is a list of clusters. Costs are recorded by step, and
-    /// order-independent sums have kernels of their own.
-    fn steps_by_list(&self) -> bool {
-        self.plan.method == Method::Cluster && !self.plan.deterministic && !self.record_history
+    /// Whether forces and steps are computed together where cells or lists of clusters suit that. Costs are recorded by
+    /// step, and order-independent sums have kernels of their own.
+    fn steps_at_once(&self) -> bool {
+        matches!(self.plan.method, Method::Cell | Method::Cluster) && !self.plan.deterministic && !self.record_history
     }
 
     /// Second half kick of `step`, thermostat, and the beginning of the step after unless this was the last.

@@ -156,6 +156,16 @@ impl Structure {
         bvh.advance(scene, plan.deterministic, results, step)
     }
 
+    /// Cells of the present positions where most particles have no neighbours.
+    pub fn sparse_cells(&self) -> Option<&Grid> {
+        let cells = match self {
+            Self::Cells(grid) => Some(&**grid),
+            Self::Clusters(clusters) => clusters.cells(),
+            _ => None,
+        };
+        cells.filter(|grid| grid.is_sparse())
+    }
+
     /// The clusters of the method `cluster`.
     pub fn clusters_mut(&mut self) -> Option<&mut Clusters> {
         if let Self::Clusters(clusters) = self { Some(clusters) } else { None }

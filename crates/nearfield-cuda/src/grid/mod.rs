@@ -8,6 +8,7 @@ mod width;
 
 pub use plan::{CellPlan, Survey};
 pub use query::{Candidates, ForceQuery, ListQuery, Pairs, count, forces, list};
+pub(crate) use query::{CellStep, step};
 
 use crate::{Buffer, Gpu, gpu::launch, scan::Scan};
 use nearfield_core::Result;
@@ -131,6 +132,11 @@ impl Grid {
     /// Whether particles are divided by radius. Then results must be zeroed before forces are added to them.
     pub fn has_classes(&self) -> bool {
         self.plan.classes.len() > 1
+    }
+
+    /// Whether most particles have no neighbours, so that [`step`] suits them.
+    pub(crate) fn is_sparse(&self) -> bool {
+        self.plan.sparse
     }
 
     /// Bytes held on the device.

@@ -3,13 +3,16 @@
 use super::{
     bulk::Bulk,
     classes::{self, Class},
-    width::pencil_width,
+    width::{cube_width, pencil_width},
 };
 use nearfield_core::SimBox;
 use nearfield_kernels::{Float4, layouts::CellClass};
 
 /// Cells along x to the width of a pencil.
 const CELLS_PER_WIDTH: f64 = 4.0;
+
+/// Expected neighbours below which most particles have none: cells then hold about one.
+const SPARSE: f64 = 1.0;
 
 /// Most cells to a particle, and in any case: where particles cluster, cells are coarser than these would like.
 const CELLS_PER_PARTICLE: f64 = 4.0;
@@ -47,6 +50,8 @@ pub struct CellPlan {
     pub slack: f32,
     /// Expected number of particles within the largest range of one of them.
     pub neighbors: f64,
+    /// Whether most particles have no neighbours, and one cutoff serves all pairs.
+    pub sparse: bool,
 }
 
 impl CellPlan {
@@ -58,9 +63,11 @@ impl CellPlan {
             None => classes::divide(survey.sample.iter().map(|p| p.w).collect(), survey.largest, &bulk),
         };
         let neighbors = survey.n as f64 * bulk.share_within(f64::from(survey.largest));
-        let mut plan = Self { slack: slack(&bulk, survey.sim_box), neighbors, ..Self::default() };
+        let sparse = survey.cutoff.is_some() && neighbors < SPARSE;
+        let mut plan = Self { slack: slack(&bulk, survey.sim_box), neighbors, sparse, ..Self::default() };
         for class in &classes {
-            let cells = lay_out(class, &bulk, plan.n_cells);
+            let shape = if sparse { Shape::cubes(class, &bulk) } else { Shape::pencils(class, &bulk) };
+            let cells = lay_out(class, &bulk, shape, plan.n_cells);
             plan.n_cells += cells.n.iter().map(|&n| n as usize).product::<usize>();
             plan.classes.push(cells);
         }
@@ -86,13 +93,32 @@ fn slack(bulk: &Bulk, sim_box: &SimBox) -> f32 {
     (8.0 * f64::from(f32::EPSILON) * extent) as f32
 }
 
-fn lay_out(class: &Class, bulk: &Bulk, first_cell: usize) -> CellClass {
+/// Cells that are so wide along y and z, and the number of them to that length along x.
+struct Shape {
+    width: f64,
+    along_x: f64,
+}
+
+impl Shape {
+    /// For warps that take several consecutive particles.
+    fn pencils(class: &Class, bulk: &Bulk) -> Self {
+        let width = pencil_width(class.n * bulk.clustering, bulk.length, f64::from(class.largest));
+        Self { width, along_x: CELLS_PER_WIDTH }
+    }
+
+    /// For threads that look around one particle each.
+    fn cubes(class: &Class, bulk: &Bulk) -> Self {
+        Self { width: cube_width(class.n * bulk.clustering, bulk.length), along_x: 1.0 }
+    }
+}
+
+fn lay_out(class: &Class, bulk: &Bulk, shape: Shape, first_cell: usize) -> CellClass {
     let most = CELLS_PER_PARTICLE * class.n + LEAST_CELLS;
-    let mut width = pencil_width(class.n * bulk.clustering, bulk.length, f64::from(class.largest));
+    let mut width = shape.width;
     let along = |width: f64| {
         let n = |length: f64, cell: f64| (length / cell).floor().clamp(1.0, MOST_ALONG);
         let [x, y, z] = bulk.length;
-        [n(x, width / CELLS_PER_WIDTH), n(y, width), n(z, width)]
+        [n(x, width / shape.along_x), n(y, width), n(z, width)]
     };
     while along(width).iter().product::<f64>() > most {
         width *= 1.25;
@@ -123,7 +149,8 @@ mod tests {
             for clustering in [1.0, 1e4] {
                 for n in [0usize, 1, 7, 100_000] {
                     let bulk = Bulk { n, lo: [0.0; 3], length, clustering };
-                    let cells = lay_out(&classes::single(n, 1.0)[0], &bulk, 0);
+                    let class = &classes::single(n, 1.0)[0];
+                    let cells = lay_out(class, &bulk, Shape::pencils(class, &bulk), 0);
                     let product: usize = cells.n.iter().map(|&n| n as usize).product();
                     assert!(product >= 1 && product <= 4 * n + 64, "{length:?} {clustering} {n}: {cells:?}");
                     assert!(cells.per_length.iter().chain(&cells.width).all(|x| x.is_finite()), "{cells:?}");
@@ -137,15 +164,17 @@ mod tests {
         for axis in 0..3 {
             let mut bulk = Bulk { n: 1_000_000, lo: [0.0; 3], length: [0.0; 3], clustering: 1.0 };
             bulk.length[axis] = 1000.0;
-            let cells = lay_out(&classes::single(bulk.n, 1.0)[0], &bulk, 0);
+            let class = &classes::single(bulk.n, 1.0)[0];
+            let cells = lay_out(class, &bulk, Shape::pencils(class, &bulk), 0);
             assert!(cells.n[axis] >= 100_000, "{cells:?}");
         }
     }
 
     #[test]
-    fn a_uniform_cube_has_pencils_of_eight_to_a_cube() {
+    fn a_uniform_cube_has_pencils_of_eight_to_a_cube_or_cells_of_one() {
         let bulk = Bulk { n: 1_000_000, lo: [0.0; 3], length: [1000.0; 3], clustering: 1.0 };
-        let cells = lay_out(&classes::single(bulk.n, 160.0)[0], &bulk, 0);
-        assert_eq!(cells.n, [200, 50, 50]);
+        let class = &classes::single(bulk.n, 160.0)[0];
+        assert_eq!(lay_out(class, &bulk, Shape::pencils(class, &bulk), 0).n, [200, 50, 50]);
+        assert_eq!(lay_out(class, &bulk, Shape::cubes(class, &bulk), 0).n, [100; 3]);
     }
 }

@@ -6,7 +6,9 @@ use nearfield_core::{ListKind, Result};
 use nearfield_kernels::{
     Float4, Ptr,
     kernels::{self, CELL_FORCES, CLUSTER, CLUSTER_FORCES, ListKernels},
-    layouts::{self, Box3, GatherArgs, Law, ListArgs, Results},
+    layouts::{
+        self, Box3, CellStepArgs, GatherArgs, Integrator, Law, ListArgs, NumberArgs, Particles, Results, Status,
+    },
 };
 
 /// Where candidates come from.
@@ -112,6 +114,42 @@ pub unsafe fn forces(gpu: &dyn Gpu, candidates: Candidates, query: &ForceQuery) 
     unsafe { launch(gpu, kernel, candidates.threads(), &arguments) }
 }
 
+/// Enqueues the forces on all particles and a step of theirs, where most have no neighbours.
+///
+/// # Safety
+/// The particles are those that the cells were built from, at the same positions and as many as all arrays of `step`.
+///
+/// # Errors
+/// As [`Gpu::launch`].
+pub(crate) unsafe fn step(gpu: &dyn Gpu, grid: &Grid, law: &Law, step: &CellStep) -> Result<()> {
+    let CellStep { integrator, particles, status, number } = *step;
+    let gather = GatherArgs {
+        law: *law,
+        space: integrator.space,
+        grid: grid.layout(),
+        velocity: particles.velocity,
+        results: Results::default(),
+        n: grid.n as u32,
+        slack: grid.plan.slack,
+    };
+    let arguments = CellStepArgs { gather, integrator, particles, status, step: number };
+    // SAFETY: the caller's promise.
+    unsafe { launch(gpu, kernels::CELL_STEP.choose(law, false, false), grid.n as u64, &arguments) }
+}
+
+/// A step of particles in cells.
+#[derive(Clone, Copy)]
+pub(crate) struct CellStep {
+    /// How particles move.
+    pub integrator: Integrator,
+    /// The particles.
+    pub particles: Particles,
+    /// What went wrong.
+    pub status: Ptr<Status>,
+    /// The step that the forces belong to: its second half kick is done, then the first one and the drift of the next.
+    pub number: u64,
+}
+
 /// What is listed.
 #[derive(Clone, Copy, Debug)]
 pub struct ListQuery {
@@ -137,6 +175,13 @@ pub struct ListQuery {
 /// As [`Gpu::allocate`] and [`Gpu::launch`].
 pub unsafe fn count(gpu: &dyn Gpu, candidates: Candidates, query: &ListQuery, list: &mut DeviceList) -> Result<()> {
     list.start(candidates.n())?;
+    if let Candidates::Cells(grid) = candidates {
+        list.number.resize(grid.n)?;
+        let (particle, id, number) = (grid.particle.ptr(), query.id, list.number.ptr());
+        let arguments = NumberArgs { particle, id, number, n: grid.n as u32, unused: 0 };
+        // SAFETY: the caller's promise, and a number for each slot.
+        unsafe { launch(gpu, kernels::NUMBER_SLOTS, grid.n as u64, &arguments)? };
+    }
     let kernel = list_kernels(candidates, query).count;
     // SAFETY: the caller's promise, and a count for each row.
     unsafe { launch(gpu, kernel, candidates.threads(), &arguments(candidates, query, list)) }
@@ -173,7 +218,7 @@ fn arguments(candidates: Candidates, query: &ListQuery, list: &DeviceList) -> Li
         law: query.law,
         space: query.space,
         grid: candidates.layout(),
-        id: query.id,
+        id: if let Candidates::Cells(_) = candidates { list.number.ptr() } else { query.id },
         count: list.count.ptr(),
         offset: list.offset.ptr(),
         index: list.index.ptr(),

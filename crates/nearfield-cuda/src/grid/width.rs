@@ -28,6 +28,11 @@ pub(super) fn pencil_width(n: f64, lengths: [f64; 3], range: f64) -> f64 {
     width_of(n / best, lengths)
 }
 
+/// Width of cubes that hold about one of `n` particles, with some room for rounding.
+pub(super) fn cube_width(n: f64, lengths: [f64; 3]) -> f64 {
+    width_of(n, lengths) * (1.0 - 1e-9)
+}
+
 /// Candidates of 8 consecutive particles at this density in pencils of this width, and the cost of the rows.
 fn candidates(density: f64, width: f64, range: f64) -> f64 {
     let length = 8.0 / (density * width * width);

@@ -47,26 +47,28 @@ struct Cluster {
     }
 };
 
-// One axis of the nearest image: half a period away, both images are out of range.
-__device__ inline float to_nearest(const Box3& space, int axis, float d, int& image) {
-    image = 0;
-    if (space.boundary[axis] != 0) return d;
-    const float length = space.length[axis], half = 0.5f * length;
-    image = d > half ? -1 : d < -half ? 1 : 0;
-    return d + (float)image * length;
+// What takes a distance along an axis to that of the nearest image: half a period away, both images are out of range.
+__device__ inline float to_nearest(const Box3& space, int axis, float d) {
+    const float length = space.length[axis], half = space.boundary[axis] == 0 ? 0.5f * length : infinity();
+    return fabsf(d) > half ? -copysignf(length, d) : 0.0f;
 }
 
 template <Images IMAGES>
-__device__ inline Shift separation(const Box3& space, const float4& xi, const float4& xj, const Shift& shift,
-                                   u32& image) {
-    Shift d = {xj.x - xi.x, xj.y - xi.y, xj.z - xi.z};
-    if (IMAGES == SHIFTED) d = {d.x + shift.x, d.y + shift.y, d.z + shift.z};
-    if (IMAGES == NEAREST) {
-        int x, y, z;
-        d = {to_nearest(space, 0, d.x, x), to_nearest(space, 1, d.y, y), to_nearest(space, 2, d.z, z)};
-        image = (u32)(13 + x + 3 * y + 9 * z);
-    }
-    return d;
+__device__ inline Shift separation(const Box3& space, const float4& xi, const float4& xj, const Shift& shift) {
+    const Shift d = {xj.x - xi.x, xj.y - xi.y, xj.z - xi.z};
+    if (IMAGES == HOME) return d;
+    if (IMAGES == SHIFTED) return {d.x + shift.x, d.y + shift.y, d.z + shift.z};
+    return {d.x + to_nearest(space, 0, d.x), d.y + to_nearest(space, 1, d.y), d.z + to_nearest(space, 2, d.z)};
+}
+
+__device__ inline u32 image_code(float shift) {
+    return shift < 0.0f ? 0 : shift > 0.0f ? 2 : 1;
+}
+
+// Image at which a candidate is nearest.
+__device__ inline u32 nearest_image(const Box3& space, const float4& xi, const float4& xj) {
+    return image_code(to_nearest(space, 0, xj.x - xi.x)) + 3 * image_code(to_nearest(space, 1, xj.y - xi.y)) +
+           9 * image_code(to_nearest(space, 2, xj.z - xi.z));
 }
 
 // Sums of `v[k]` over the lanes of a warp, in lane 4 k and the three after it: half the values are passed on at a time.

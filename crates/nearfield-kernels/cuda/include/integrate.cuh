@@ -45,6 +45,9 @@ __device__ inline void kick(const Integrator& how, Moving& p, const float4& forc
 
 // Shortens a velocity that would carry the particle beyond the displacement limit.
 __device__ inline void limit(const Integrator& how, Moving& p) {
+    // Nearly always, and without square roots.
+    const float below = how.speed_limit * how.speed_limit * 0.9999f;
+    if (p.velocity.x * p.velocity.x + p.velocity.y * p.velocity.y + p.velocity.z * p.velocity.z < below) return;
     if (how.speed_limit == infinity()) return;
     // In f64: capped forces of 1e30 square beyond f32.
     const double x = p.velocity.x, y = p.velocity.y, z = p.velocity.z;
@@ -128,4 +131,25 @@ __device__ inline void start_step(const Integrator& how, Moving& p, const float4
 __device__ inline void finish_step(const Integrator& how, Moving& p, const float4& force) {
     kick(how, p, force);
     limit(how, p);
+}
+
+// The rest of `step` of particle `i`, `p`, and the beginning of the next. A particle that has failed is noted and left
+// where it was, so that coordinates stay finite until the run is stopped.
+__device__ inline bool advance(const Integrator& how, Status* status, const u32* ids, u32 i, u64 step, Moving& p,
+                               const float4& force) {
+    if (!all_finite(force)) {
+        atomicMin(&status->force, failure(step, ids[i]));
+        return false;
+    }
+    const Moving before = p;
+    // Random numbers take input indices; nothing else does.
+    const u32 id = how.langevin ? ids[i] : 0;
+    finish_step(how, p, force);
+    start_step(how, p, force, id, step + 1);
+    if (!all_finite(p.position)) {
+        atomicMin(&status->position, failure(step + 1, ids[i]));
+        p = before;
+        return false;
+    }
+    return true;
 }

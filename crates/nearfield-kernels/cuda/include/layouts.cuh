@@ -391,6 +391,36 @@ struct GatherArgs {
 };
 static_assert(sizeof(GatherArgs) == 736, "GatherArgs differs between host and device");
 
+// Arguments of `cell_step_*`: forces, and with them a step of all particles.
+struct CellStepArgs {
+    // Where forces come from; results are not stored.
+    GatherArgs gather;
+    // How particles move.
+    Integrator integrator;
+    // The particles, at the positions that were sorted.
+    Particles particles;
+    // What went wrong.
+    Status *status;
+    // The step that the forces belong to.
+    u64 step;
+};
+static_assert(sizeof(CellStepArgs) == 880, "CellStepArgs differs between host and device");
+
+// Arguments of `number_slots`.
+struct NumberArgs {
+    // Place of each slot's particle.
+    u32 *particle;
+    // Input index of each place.
+    u32 *id;
+    // Input index of each slot's particle.
+    u32 *number;
+    // Number of particles.
+    u32 n;
+    // Zero.
+    u32 unused;
+};
+static_assert(sizeof(NumberArgs) == 32, "NumberArgs differs between host and device");
+
 // Arguments of the kernels that list neighbours.
 struct ListArgs {
     // The interaction, for ranges.
@@ -399,7 +429,7 @@ struct ListArgs {
     Box3 space;
     // The cells; only `slot` and `particle` for `brute`.
     Grid grid;
-    // Input index of each place.
+    // Input index of each slot's particle.
     u32 *id;
     // Entries of each row, by input index; counted, or counted down while rows are filled.
     u32 *count;
@@ -428,8 +458,8 @@ struct Segment {
     u32 end;
     // The segment where the list goes on; all ones where it ends.
     u32 next;
-    // Zero.
-    u32 unused;
+    // 1 where each pair needs an image of its own, 0 where one serves a candidate and the whole cluster.
+    u32 by_pair;
 };
 static_assert(sizeof(Segment) == 16, "Segment differs between host and device");
 
@@ -473,10 +503,14 @@ struct ClusterListArgs {
     float slack;
     // How near a periodic face a particle may cross it while the list serves.
     float margin;
+    // 1 where pairs are listed once: by the cluster whose slots come first, those within a cluster from both sides.
+    u32 once;
+    // Zero.
+    u32 unused;
 };
-static_assert(sizeof(ClusterListArgs) == 728, "ClusterListArgs differs between host and device");
+static_assert(sizeof(ClusterListArgs) == 736, "ClusterListArgs differs between host and device");
 
-// Arguments of `listed_*`: forces of all particles.
+// Arguments of `listed_*` and `pairs_*`: forces of all particles.
 struct ListedArgs {
     // As for all kernels that gather forces, of particles in memory order.
     GatherArgs gather;
@@ -484,33 +518,37 @@ struct ListedArgs {
     Segment *segment;
     // See [`ClusterListArgs`].
     u32 *entry;
+    // Nothing is done unless the list serves.
+    ClusterControl *control;
+    // The step that the forces belong to; zero where it is known that the list serves.
+    u64 step;
+    // Clusters that a warp of `pairs_*` takes, one after another.
+    u32 clusters_per_warp;
+    // Zero.
+    u32 unused;
 };
-static_assert(sizeof(ListedArgs) == 752, "ListedArgs differs between host and device");
+static_assert(sizeof(ListedArgs) == 776, "ListedArgs differs between host and device");
 
-// Arguments of `step_*`: forces, and with them a step of all particles.
+// Arguments of `step_*` and `move_listed`: a step of all particles by forces that are computed or read.
 struct ClusterStepArgs {
-    // Where forces come from; results are not stored.
+    // Where forces come from. In `step_*` results are not stored, in `move_listed` they are zeroed once read.
     ListedArgs listed;
     // How particles move.
     Integrator integrator;
     // The particles.
     Particles particles;
-    // Where positions go.
+    // Where positions go: in `step_*` not to where they are.
     float4 *next;
     // Positions that the list was made for.
     float4 *reference;
     // What went wrong.
     Status *status;
-    // Whether the list serves.
-    ClusterControl *control;
-    // The step that the forces belong to.
-    u64 step;
     // Square of the distance that particles may move while the list serves.
     float limit2;
     // Zero.
     u32 unused;
 };
-static_assert(sizeof(ClusterStepArgs) == 928, "ClusterStepArgs differs between host and device");
+static_assert(sizeof(ClusterStepArgs) == 936, "ClusterStepArgs differs between host and device");
 
 // Arguments of `clusters_moved`: whether a list serves the present positions.
 struct ClustersMovedArgs {

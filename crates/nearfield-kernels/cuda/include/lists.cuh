@@ -12,7 +12,7 @@ template <class D, bool BRUTE, bool VARIABLE> struct Lister : Cluster {
 
     __device__ Lister(const ListArgs& arguments, const ClusterPlace& place) : a(arguments) {
         load(a.law, a.grid.slot, place);
-        id = a.id[place_of(a.grid, first + smaller(threadIdx.x % WARP, place.count - 1))];
+        id = a.id[first + smaller(threadIdx.x % WARP, place.count - 1)];
     }
 
     // Whether rows are written by one warp only.
@@ -20,35 +20,40 @@ template <class D, bool BRUTE, bool VARIABLE> struct Lister : Cluster {
         return BRUTE || !VARIABLE || a.grid.n_classes == 1;
     }
 
-    __device__ void meet(u32 slot, bool valid, u32 image) {
+    // Chunks that need no care are most of them.
+    __device__ void meet(const Candidate& c) {
         if (BRUTE) {
-            pairs<NEAREST, true>(slot, valid, image);
-        } else if (__any_sync(ALL_LANES, valid && (image != HOME_IMAGE || slot - first < CLUSTER)) || is_partial()) {
-            pairs<SHIFTED, true>(slot, valid, image);
+            pairs<NEAREST, true>(c);
+        } else if (a.half || __any_sync(ALL_LANES, c.valid && (c.image != HOME_IMAGE || c.slot - first < CLUSTER)) ||
+                   is_partial()) {
+            pairs<SHIFTED, true>(c);
         } else {
-            pairs<HOME, false>(slot, valid, image);
+            pairs<HOME, false>(c);
         }
     }
 
-    // CARE: some particles may not be active, and candidates may be the particles themselves.
-    template <Images IMAGES, bool CARE> __device__ void pairs(u32 slot, bool valid, u32 image) {
-        const float4 xj = slots[slot];
-        const u32 id_j = a.id[place_of(a.grid, slot)];
+    // CARE: some particles may not be active, candidates may be the particles themselves, or lists are half.
+    template <Images IMAGES, bool CARE> __device__ void pairs(const Candidate& c) {
+        const bool half = CARE && a.half;
+        const u32 id_j = D::FILLS || VARIABLE || half ? a.id[c.slot] : 0;
+        u32 image = c.image;
         Shift shift = {0.0f, 0.0f, 0.0f};
         if (IMAGES == SHIFTED && image != HOME_IMAGE) shift = shift_of(a.space, image);
-        const u32 own = IMAGES == SHIFTED && image != HOME_IMAGE ? (u32)CLUSTER : slot - first;
+        const u32 own = IMAGES == SHIFTED && image != HOME_IMAGE ? (u32)CLUSTER : c.slot - first;
+        const u32 allowed = own < CLUSTER ? active & ~(1u << own) : active;
 #pragma unroll
         for (u32 k = 0; k < CLUSTER; ++k) {
-            if (CARE && !(active >> k & 1)) continue;
-            const Shift d = separation<IMAGES>(a.space, x[k], xj, shift, image);
-            const float range = VARIABLE ? fmaxf(x[k].w, xj.w) : cutoff;
-            bool in = valid && squared_length(d.x, d.y, d.z) < range * range;
-            if (CARE) in = in && own != k;
+            const Shift d = separation<IMAGES>(a.space, x[k], c.x, shift);
+            if (IMAGES == NEAREST) image = nearest_image(a.space, x[k], c.x);
+            const float range = VARIABLE ? fmaxf(x[k].w, c.x.w) : cutoff;
+            // Without short circuits, which would be branches.
+            bool in = c.valid & (squared_length(d.x, d.y, d.z) < range * range);
+            if (CARE) in = in & ((allowed >> k & 1) != 0);
             bool here = in;
-            if (a.half || (VARIABLE && once)) {
+            if (half || (VARIABLE && once)) {
                 const u32 id_i = __shfl_sync(ALL_LANES, id, k);
-                here = in && (!a.half || id_i < id_j);
-                if (VARIABLE && once && in && (!a.half || id_j < id_i)) {
+                here = in && (!half || id_i < id_j);
+                if (VARIABLE && once && in && (!half || id_j < id_i)) {
                     static_cast<D*>(this)->theirs(id_j, id_i, 2 * HOME_IMAGE - image);
                 }
             }
@@ -59,6 +64,8 @@ template <class D, bool BRUTE, bool VARIABLE> struct Lister : Cluster {
 
 template <bool BRUTE, bool VARIABLE>
 struct ListCount : Lister<ListCount<BRUTE, VARIABLE>, BRUTE, VARIABLE> {
+    static const bool FILLS = false;
+
     u32 count[CLUSTER];
 
     __device__ ListCount(const ListArgs& arguments, const ClusterPlace& place)
@@ -68,7 +75,7 @@ struct ListCount : Lister<ListCount<BRUTE, VARIABLE>, BRUTE, VARIABLE> {
     }
 
     __device__ void mine(u32 k, bool in, u32, u32) {
-        count[k] += in ? 1 : 0;
+        if (in) ++count[k];
     }
 
     __device__ void theirs(u32 id_j, u32, u32) {
@@ -89,37 +96,38 @@ struct ListCount : Lister<ListCount<BRUTE, VARIABLE>, BRUTE, VARIABLE> {
 
 template <bool BRUTE, bool VARIABLE>
 struct ListFill : Lister<ListFill<BRUTE, VARIABLE>, BRUTE, VARIABLE> {
-    u64 next; // lane k: where the row of particle k goes on
+    static const bool FILLS = true;
+
+    u32* next[CLUSTER]; // where the row of particle k goes on
 
     __device__ ListFill(const ListArgs& arguments, const ClusterPlace& place)
         : Lister<ListFill, BRUTE, VARIABLE>(arguments, place) {
-        next = this->a.offset[this->id];
+        const u64 start = this->a.offset[this->id];
+#pragma unroll
+        for (u32 k = 0; k < CLUSTER; ++k) next[k] = this->a.index + __shfl_sync(ALL_LANES, start, k);
     }
 
     __device__ void mine(u32 k, bool in, u32 id_j, u32 image) {
-        const u32 votes = __ballot_sync(ALL_LANES, in);
-        if (votes == 0) return;
-        const u32 lane = threadIdx.x % WARP, n = __popc(votes);
-        u64 start = next;
-        if (lane == k) {
+        const u32 votes = __ballot_sync(ALL_LANES, in), n = __popc(votes), rank = __popc(votes & lanes_below());
+        if (this->owns_rows()) {
+            if (in) put(next[k] + rank, id_j, image);
+            next[k] += n;
+        } else if (votes != 0) {
             // Rows that several warps write are filled from their ends.
-            if (this->owns_rows()) {
-                next += n;
-            } else {
-                start += atomicSub(this->a.count + this->id, n) - n;
-            }
+            u32 left = 0;
+            if (threadIdx.x % WARP == k) left = atomicSub(this->a.count + this->id, n) - n;
+            left = __shfl_sync(ALL_LANES, left, k);
+            if (in) put(next[k] + left + rank, id_j, image);
         }
-        start = __shfl_sync(ALL_LANES, start, k);
-        if (in) put(start + __popc(votes & lanes_below()), id_j, image);
     }
 
     __device__ void theirs(u32 id_j, u32 id_i, u32 image) {
-        put(this->a.offset[id_j] + (atomicSub(this->a.count + id_j, 1u) - 1), id_i, image);
+        put(this->a.index + this->a.offset[id_j] + (atomicSub(this->a.count + id_j, 1u) - 1), id_i, image);
     }
 
-    __device__ void put(u64 entry, u32 neighbor, u32 image) {
-        this->a.index[entry] = neighbor;
-        if (this->a.image) this->a.image[entry] = (u8)image;
+    __device__ void put(u32* entry, u32 neighbor, u32 image) {
+        *entry = neighbor;
+        if (this->a.image) this->a.image[entry - this->a.index] = (u8)image;
     }
 
     // Rows are complete already.

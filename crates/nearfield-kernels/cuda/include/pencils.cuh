@@ -55,8 +55,15 @@ __device__ inline float gap(const Bounds& box, int axis, float lo, float hi, flo
     return fmaxf(fmaxf((lo - box.hi[axis]) + shift, (box.lo[axis] - hi) - shift), 0.0f);
 }
 
+// A bit for each lane before this one.
 __device__ inline u32 lanes_below() {
+#ifdef __CUDA_ARCH__
+    u32 mask;
+    asm("mov.u32 %0, %%lanemask_lt;" : "=r"(mask));
+    return mask;
+#else
     return (1u << (threadIdx.x % WARP)) - 1;
+#endif
 }
 
 // Square root to one ulp.
@@ -73,16 +80,21 @@ __device__ inline float approximate_root(float x) {
 // Bit `c` for each periodic image c that may hold neighbours: home, and images of which a face is within range.
 // Coordinates along periodic axes are within the box.
 __device__ inline u32 reachable_images(const Box3& space, const Bounds& box, float range) {
+    u32 codes[3];
+    for (int axis = 0; axis < 3; ++axis) {
+        codes[axis] = 2;
+        if (space.boundary[axis] == 0) {
+            if (box.lo[axis] - space.lo[axis] < range) codes[axis] |= 1;
+            if (space.hi[axis] - box.hi[axis] < range) codes[axis] |= 4;
+        }
+    }
+    // Nearly always.
+    if ((codes[0] | codes[1] | codes[2]) == 2) return 1u << HOME_IMAGE;
     u32 reach = 1;
     for (int axis = 2; axis >= 0; --axis) {
-        u32 codes = 2;
-        if (space.boundary[axis] == 0) {
-            if (box.lo[axis] - space.lo[axis] < range) codes |= 1;
-            if (space.hi[axis] - box.hi[axis] < range) codes |= 4;
-        }
         // One more digit in base 3 below those so far: each image becomes three.
         u32 longer = 0;
-        for (u32 c = 0; c < 9; ++c) longer |= (reach >> c & 1) * codes << 3 * c;
+        for (u32 c = 0; c < 9; ++c) longer |= (reach >> c & 1) * codes[axis] << 3 * c;
         reach = longer;
     }
     return reach;
@@ -99,6 +111,7 @@ struct RowSearch {
 
     // Of the image that is being searched.
     u32 image, first_y, first_z, n_y, next, count;
+    u32 y, z; // this lane's next row, from the first
     Shift shift;
 
     __device__ void start_image(u32 code) {
@@ -110,6 +123,16 @@ struct RowSearch {
         n_y = cell_coordinate(cells, 1, box.hi[1] + reach - shift.y) + 1 - first_y;
         count = n_y * (cell_coordinate(cells, 2, box.hi[2] + reach - shift.z) + 1 - first_z);
         next = 0;
+        y = threadIdx.x % WARP;
+        z = 0;
+        carry(y, z);
+    }
+
+    // Takes whole planes out of `y`, up to 32, rather than by a division: halves between quotients absorb rounding.
+    __device__ void carry(u32& y, u32& z) const {
+        const u32 planes = (u32)(((float)y + 0.5f) * reciprocal((float)n_y));
+        y -= planes * n_y;
+        z += planes;
     }
 
     // Distance along y or z from the box to row or plane `k`.
@@ -122,18 +145,25 @@ struct RowSearch {
 
     // This lane's row: slots from `start` to `end`.
     __device__ void next_row(u32& start, u32& end) {
-        const u32 k = next + threadIdx.x % WARP;
+        const bool beyond = next + threadIdx.x % WARP >= count;
+        const u32 row_y = first_y + y, row_z = first_z + z;
         next += WARP;
+        if (next < count) {
+            u32 step_y = WARP, step_z = 0;
+            carry(step_y, step_z);
+            y += step_y;
+            z += step_z;
+            if (y >= n_y) y -= n_y, ++z;
+        }
         start = end = 0;
-        if (k >= count) return;
-        const u32 y = first_y + k % n_y, z = first_z + k / n_y;
-        const float dy = gap_to(1, y, shift.y), dz = gap_to(2, z, shift.z);
+        if (beyond) return;
+        const float dy = gap_to(1, row_y, shift.y), dz = gap_to(2, row_z, shift.z);
         const float rest = range * range * RANGE_MARGIN - (dy * dy + dz * dz);
         if (!(rest >= 0.0f)) return;
         const float half = approximate_root(rest) * RANGE_MARGIN + slack;
         const u32 x0 = cell_coordinate(cells, 0, box.lo[0] - half - shift.x);
         const u32 x1 = cell_coordinate(cells, 0, box.hi[0] + half - shift.x);
-        const u32 first = first_of_cells(cells, row_number(cells, y, z), x0, x1);
+        const u32 first = first_of_cells(cells, row_number(cells, row_y, row_z), x0, x1);
         start = larger(cell_start[first], least);
         end = larger(cell_start[first + (x1 - x0) + 1], start);
     }
@@ -162,15 +192,26 @@ __device__ inline void append_rows(Scratch& scratch, Pending& pending, u32 start
     pending.candidates += __shfl_sync(ALL_LANES, sum, WARP - 1);
 }
 
-// Takes the candidates of the waiting rows 32 at a time to `v.meet(slot, valid, image)`.
+// What a lane meets.
+struct Candidate {
+    u32 slot, image;
+    bool valid;
+    float4 x;
+};
+
+// Candidate `t` of `total`, the last instead of those after, whose row is found from that of an earlier one on.
+template <class V>
+__device__ inline Candidate candidate(const Scratch& scratch, u32 t, u32 total, u32& row, const V& v) {
+    const u32 at = smaller(t, total - 1);
+    while (scratch.end[row] <= at) ++row;
+    const u32 slot = at + scratch.offset[row];
+    return {slot, scratch.image[row], t < total, v.slots[slot]};
+}
+
+// Takes the candidates of the waiting rows 32 at a time to `v.meet(candidate)`. To load the next ahead gained nothing.
 template <class V> __device__ inline void walk_rows(const Scratch& scratch, u32 total, V& v) {
     u32 row = 0;
-    for (u32 base = 0; base < total; base += WARP) {
-        const u32 t = base + threadIdx.x % WARP;
-        const bool valid = t < total;
-        while (valid && scratch.end[row] <= t) ++row;
-        v.meet(valid ? t + scratch.offset[row] : 0, valid, scratch.image[row]);
-    }
+    for (u32 base = 0; base < total; base += WARP) v.meet(candidate(scratch, base + threadIdx.x % WARP, total, row, v));
 }
 
 // The same, but only those within their own radius or `v.radius` of the box are met. Those that do not fill a chunk
@@ -182,22 +223,19 @@ __device__ inline void walk_rows_within(Scratch& scratch, Pending& pending, bool
     u32 row = 0, queued = pending.queued;
     for (u32 base = 0; base < total || (finish && queued > 0); base += WARP) {
         if (base < total) {
-            const u32 t = base + lane;
-            const bool valid = t < total;
-            while (valid && scratch.end[row] <= t) ++row;
-            const u32 slot = valid ? t + scratch.offset[row] : 0, image = scratch.image[row];
-            const float4 p = v.slots[slot];
+            const Candidate found = candidate(scratch, base + lane, total, row, v);
+            const float4 p = found.x;
             Shift s = {0.0f, 0.0f, 0.0f};
-            if (image != HOME_IMAGE) s = shift_of(space, image);
+            if (found.image != HOME_IMAGE) s = shift_of(space, found.image);
             const float range = fmaxf(v.radius, v.radius_of(p));
             const float r2 =
                 squared_length(gap(box, 0, p.x, p.x, s.x), gap(box, 1, p.y, p.y, s.y), gap(box, 2, p.z, p.z, s.z));
-            const bool near = valid && r2 < range * range;
+            const bool near = found.valid && r2 < range * range;
             const u32 votes = __ballot_sync(ALL_LANES, near);
             if (near) {
                 const u32 place = queued + __popc(votes & lanes_below());
-                scratch.queue_slot[place] = slot;
-                scratch.queue_image[place] = image;
+                scratch.queue_slot[place] = found.slot;
+                scratch.queue_image[place] = found.image;
             }
             queued += __popc(votes);
             __syncwarp();
@@ -206,7 +244,8 @@ __device__ inline void walk_rows_within(Scratch& scratch, Pending& pending, bool
             const u32 taken = smaller(queued, (u32)WARP);
             queued -= taken;
             const u32 place = queued + smaller(lane, taken - 1);
-            v.meet(scratch.queue_slot[place], lane < taken, scratch.queue_image[place]);
+            const u32 slot = scratch.queue_slot[place];
+            v.meet({slot, scratch.queue_image[place], lane < taken, v.slots[slot]});
             __syncwarp();
         }
     }
@@ -245,28 +284,29 @@ __device__ inline void search_class(RowSearch search, Scratch& scratch, Pending&
 
 // Whether the surroundings of a box are much larger than those of one particle.
 __device__ inline bool is_spread(const Bounds& box, const CellClass& cells, float range) {
-    float ratio = 1.0f;
+    float surroundings = 1.0f;
     for (int axis = 0; axis < 3; ++axis) {
         const float around = 2.0f * range + cells.width[axis];
-        ratio *= (box.hi[axis] - box.lo[axis] + around) / around;
+        surroundings *= 1.0f + (box.hi[axis] - box.lo[axis]) * reciprocal(around);
     }
-    return ratio > SPREAD_LIMIT;
+    return surroundings > SPREAD_LIMIT;
 }
 
 // Candidates for the particles of a cluster: of its own class, and of those of larger radii, so that pairs of two
 // classes are met once, from the smaller. Slots before `v.least` are left out. Tells `v` which of its particles are
-// searched for and whether pairs are met once.
+// searched for and whether pairs are met once. Without WITHIN, there is one class.
 template <bool WITHIN, class V>
 __device__ inline void search_cells(const Grid& grid, const Box3& space, float slack, const ClusterPlace& cluster,
                                     const Bounds& box, Scratch& scratch, V& v) {
     Pending pending = {0, 0, 0};
     bool apart = false;
-    for (u32 k = cluster.of_class; k < grid.n_classes; ++k) {
+    const u32 own = WITHIN ? cluster.of_class : 0, n_classes = WITHIN ? grid.n_classes : 1;
+    for (u32 k = own; k < n_classes; ++k) {
         const CellClass& cells = grid.classes[k];
-        v.once = k > cluster.of_class;
+        v.once = k > own;
         // The ranges of all larger classes are at least that of the next.
-        if (k <= cluster.of_class + 1) apart = is_spread(box, cells, cells.largest);
-        const bool finish = apart || !v.once || k + 1 == grid.n_classes;
+        if (k <= own + 1) apart = is_spread(box, cells, cells.largest);
+        const bool finish = apart || !v.once || k + 1 == n_classes;
         for (u32 part = 0; part < (apart ? cluster.count : 1); ++part) {
             v.active = apart ? 1u << part : (1u << cluster.count) - 1;
             const Bounds part_box = apart ? point_bounds(grid.slot[cluster.first + part]) : box;
@@ -276,11 +316,17 @@ __device__ inline void search_cells(const Grid& grid, const Box3& space, float s
     }
 }
 
+// The cluster of a warp, of any class or, without WITHIN, of the only one.
+template <bool WITHIN> __device__ inline ClusterPlace own_cluster(const Grid& grid, u32 n) {
+    const u32 number = thread_index() / WARP;
+    return WITHIN ? find_cluster(grid, n, number) : consecutive_cluster(n, number);
+}
+
 // Takes all particles 32 at a time to `v.meet`.
 template <class V> __device__ inline void meet_all(u32 n, V& v) {
     for (u32 base = 0; base < n; base += WARP) {
         const u32 slot = base + threadIdx.x % WARP;
         const bool valid = slot < n;
-        v.meet(valid ? slot : 0, valid, HOME_IMAGE);
+        v.meet({valid ? slot : 0, HOME_IMAGE, valid, v.slots[valid ? slot : 0]});
     }
 }

@@ -16,8 +16,8 @@ layouts! {
         pub end: u32,
         /// The segment where the list goes on; all ones where it ends.
         pub next: u32,
-        /// Zero.
-        pub unused: u32,
+        /// 1 where each pair needs an image of its own, 0 where one serves a candidate and the whole cluster.
+        pub by_pair: u32,
     }
 
     /// What kernels tell each other and the host about a list.
@@ -59,9 +59,13 @@ layouts! {
         pub slack: f32,
         /// How near a periodic face a particle may cross it while the list serves.
         pub margin: f32,
+        /// 1 where pairs are listed once: by the cluster whose slots come first, those within a cluster from both sides.
+        pub once: u32,
+        /// Zero.
+        pub unused: u32,
     }
 
-    /// Arguments of `listed_*`: forces of all particles.
+    /// Arguments of `listed_*` and `pairs_*`: forces of all particles.
     pub struct ListedArgs {
         /// As for all kernels that gather forces, of particles in memory order.
         pub gather: GatherArgs,
@@ -69,26 +73,30 @@ layouts! {
         pub segment: Ptr<Segment>,
         /// See [`ClusterListArgs`].
         pub entry: Ptr<u32>,
+        /// Nothing is done unless the list serves.
+        pub control: Ptr<ClusterControl>,
+        /// The step that the forces belong to; zero where it is known that the list serves.
+        pub step: u64,
+        /// Clusters that a warp of `pairs_*` takes, one after another.
+        pub clusters_per_warp: u32,
+        /// Zero.
+        pub unused: u32,
     }
 
-    /// Arguments of `step_*`: forces, and with them a step of all particles.
+    /// Arguments of `step_*` and `move_listed`: a step of all particles by forces that are computed or read.
     pub struct ClusterStepArgs {
-        /// Where forces come from; results are not stored.
+        /// Where forces come from. In `step_*` results are not stored, in `move_listed` they are zeroed once read.
         pub listed: ListedArgs,
         /// How particles move.
         pub integrator: Integrator,
         /// The particles.
         pub particles: Particles,
-        /// Where positions go.
+        /// Where positions go: in `step_*` not to where they are.
         pub next: Ptr<Float4>,
         /// Positions that the list was made for.
         pub reference: Ptr<Float4>,
         /// What went wrong.
         pub status: Ptr<Status>,
-        /// Whether the list serves.
-        pub control: Ptr<ClusterControl>,
-        /// The step that the forces belong to.
-        pub step: u64,
         /// Square of the distance that particles may move while the list serves.
         pub limit2: f32,
         /// Zero.

@@ -1,6 +1,9 @@
 //! Cells and the kernels that scan them.
 
-use super::physics::{Box3, Law, Results};
+use super::{
+    particles::{Integrator, Particles, Status},
+    physics::{Box3, Law, Results},
+};
 use crate::layout::{Float4, Ptr, layouts};
 
 layouts! {
@@ -91,6 +94,34 @@ layouts! {
         pub slack: f32,
     }
 
+    /// Arguments of `cell_step_*`: forces, and with them a step of all particles.
+    pub struct CellStepArgs {
+        /// Where forces come from; results are not stored.
+        pub gather: GatherArgs,
+        /// How particles move.
+        pub integrator: Integrator,
+        /// The particles, at the positions that were sorted.
+        pub particles: Particles,
+        /// What went wrong.
+        pub status: Ptr<Status>,
+        /// The step that the forces belong to.
+        pub step: u64,
+    }
+
+    /// Arguments of `number_slots`.
+    pub struct NumberArgs {
+        /// Place of each slot's particle.
+        pub particle: Ptr<u32>,
+        /// Input index of each place.
+        pub id: Ptr<u32>,
+        /// Input index of each slot's particle.
+        pub number: Ptr<u32>,
+        /// Number of particles.
+        pub n: u32,
+        /// Zero.
+        pub unused: u32,
+    }
+
     /// Arguments of the kernels that list neighbours.
     pub struct ListArgs {
         /// The interaction, for ranges.
@@ -99,7 +130,7 @@ layouts! {
         pub space: Box3,
         /// The cells; only `slot` and `particle` for `brute`.
         pub grid: Grid,
-        /// Input index of each place.
+        /// Input index of each slot's particle.
         pub id: Ptr<u32>,
         /// Entries of each row, by input index; counted, or counted down while rows are filled.
         pub count: Ptr<u32>,

@@ -1,0 +1,30 @@
+// Steps by lists of clusters.
+//
+// The host enqueues steps without knowing how long the list will serve. A step that finds a particle too far from where
+// it was when the list was made forbids the next, and steps that are forbidden do nothing. So no pair is missed, and
+// the host need not wait for a step.
+
+#pragma once
+
+#include "integrate.cuh"
+#include "listed.cuh"
+
+// Whether the step is not forbidden; it is then noted as done.
+__device__ inline bool begin_step(const ClusterStepArgs& a) {
+    if (!serves(a.listed)) return false;
+    if (thread_index() == 0) a.listed.control->done = a.listed.step;
+    return true;
+}
+
+// The rest of a step of particle `i`, `p`, and the beginning of the next.
+__device__ inline void move_particle(const ClusterStepArgs& a, u32 i, Moving p, const float4& force) {
+    Particles to = a.particles;
+    to.position = a.next;
+    // Read before anything is written, so that it need not be waited for then.
+    const float4 reference = a.reference[i];
+    const bool moves = advance(a.integrator, a.status, a.particles.id, i, a.listed.step, p, force);
+    store_moving(to, i, p);
+    if (moves && has_moved(a.integrator.space, reference, p.position, a.limit2)) {
+        atomicMin(&a.listed.control->rebuild_at, a.listed.step + 1);
+    }
+}
