@@ -77,7 +77,7 @@ static MILLIONS: LazyLock<Vec<(System, Vec<Pair>)>> = LazyLock::new(|| {
         let mut engine = super::engine();
         engine.load(&system, &Plan::new(Method::Cell)).expect("the system fits");
         let pairs = pairs(&mut engine);
-        assert!(pairs.len() > 4 * MILLION, "{} pairs", pairs.len());
+        assert!(pairs.len() > 3 * MILLION, "{} pairs", pairs.len());
         (system, pairs)
     };
     [uniform, sphere].map(with_pairs).into()

@@ -12,8 +12,8 @@ use std::time::Instant;
 
 /// Evaluations that take this many times the seconds of a measurement are not repeated.
 const SINGLE: f64 = 10.0;
-/// A first evaluation that takes longer, in seconds, does not do so because programs are compiled for a GPU.
-const COMPILING: f64 = 5.0;
+/// A first evaluation that takes longer, in seconds, is not repeated without energies, which may take a tenth.
+const ONCE: f64 = 30.0;
 /// Most repetitions.
 const MAX_REPETITIONS: usize = 50;
 /// A run of steps may take this many times as long as one evaluation may.
@@ -79,7 +79,7 @@ impl Trial<'_> {
         // By `advance`, so that overlaps are allowed where the dynamics allow them.
         let pairs = self.engine.advance(&self.dynamics, 0, 0, Quantities::ALL)?.pairs;
         let first = start.elapsed().as_secs_f64();
-        let evaluation = if first > COMPILING { first } else { first.min(self.evaluation()?) };
+        let evaluation = if first > ONCE { first } else { first.min(self.evaluation()?) };
         let is_slow = evaluation > SINGLE * self.seconds;
         let measurement = Measurement {
             pairs,
