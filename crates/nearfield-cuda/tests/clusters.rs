@@ -1,7 +1,8 @@
 //! Each variant of the method `cluster`, on systems for which it is chosen, against the reference. Ignored where the
 //! emulator was built without a C++ compiler.
 
-use libtest_mimic::{Arguments, Trial};
+mod emulated;
+
 use nearfield_conformance::cases;
 use nearfield_core::{
     Boundary, Dynamics, Engine, Interaction, Method, Particles, PerParticle, Plan, Quantities, Radii, System, oracle,
@@ -194,12 +195,5 @@ fn main() {
         ("steps_recorded_one_by_one_are_those_of_lists", steps_recorded_one_by_one_are_those_of_lists),
         ("a_list_beyond_the_budget_is_not_kept", a_list_beyond_the_budget_is_not_kept),
     ];
-    let trials = tests.map(|(name, test)| {
-        let run = move || {
-            test();
-            Ok(())
-        };
-        Trial::test(name, run).with_ignored_flag(!nearfield_emulator::available())
-    });
-    libtest_mimic::run(&Arguments::from_args(), trials.into()).exit();
+    emulated::run(tests);
 }

@@ -1,7 +1,8 @@
 //! The conformance suite on the GPU engine, its kernels run by the emulator. Ignored where that was built without a C++
 //! compiler.
 
-use libtest_mimic::{Arguments, Trial};
+mod emulated;
+
 use nearfield_core::Engine;
 use nearfield_cuda::CudaEngine;
 use nearfield_emulator::Emulator;
@@ -12,13 +13,5 @@ fn engine() -> Box<dyn Engine> {
 }
 
 fn main() {
-    let arguments = Arguments::from_args();
-    let trials = nearfield_conformance::bodies().into_iter().map(|(name, body)| {
-        let test = move || {
-            body(&engine);
-            Ok(())
-        };
-        Trial::test(name, test).with_ignored_flag(!nearfield_emulator::available())
-    });
-    libtest_mimic::run(&arguments, trials.collect()).exit();
+    emulated::run(nearfield_conformance::bodies().into_iter().map(|(name, body)| (name, move || body(&engine))));
 }

@@ -1,7 +1,8 @@
 //! What the conformance suite cannot see of the ray-traced methods: that they save the work they should. Ignored where
 //! the emulator was built without a C++ compiler.
 
-use libtest_mimic::{Arguments, Trial};
+mod emulated;
+
 use nearfield_conformance::cases;
 use nearfield_core::{Dynamics, Engine, Images, Maintenance, Method, Plan, Quantities, Report};
 use nearfield_cuda::CudaEngine;
@@ -56,12 +57,5 @@ fn main() {
             a_list_too_large_loses_its_skin_once_and_is_then_processed_in_batches,
         ),
     ];
-    let trials = tests.map(|(name, test)| {
-        let run = move || {
-            test();
-            Ok(())
-        };
-        Trial::test(name, run).with_ignored_flag(!nearfield_emulator::available())
-    });
-    libtest_mimic::run(&Arguments::from_args(), trials.into()).exit();
+    emulated::run(tests);
 }

@@ -1,25 +1,11 @@
 //! Rays of finite length cross spheres and triangles.
 
 mod common;
-use bytemuck::{Pod, Zeroable};
 use common::*;
 use nearfield_core::Result;
-use nearfield_cuda::gpu::{AccelerationStructure, Bodies, Gpu, Preference, RayTracing, Trace, Triangle};
+use nearfield_cuda::gpu::{AccelerationStructure, Bodies, Preference, Trace, Triangle};
 use nearfield_emulator::Emulator;
 use nearfield_kernels::{Float4, Primitive, Ptr};
-
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-struct Rays {
-    points: u64,
-    counts: u64,
-    sums: u64,
-    handle: u64,
-}
-
-fn tracing(gpu: &Emulator) -> &dyn RayTracing {
-    gpu.ray_tracing().expect("it is emulated")
-}
 
 /// For rays along x of length w: number of crossings and distance of the last.
 fn crossings(gpu: &Emulator, handle: u64, primitive: Primitive, origins: &[[f32; 4]]) -> Result<Vec<(u32, f32)>> {

@@ -1,28 +1,14 @@
 //! Rays find the boxes that brute force finds, as they were at the last build or refit.
 
 mod common;
-use bytemuck::{Pod, Zeroable};
 use common::*;
 use nearfield_core::Result;
-use nearfield_cuda::gpu::{Aabb, AccelerationStructure, Bodies, Gpu, Preference, RayTracing, Trace};
+use nearfield_cuda::gpu::{Aabb, AccelerationStructure, Bodies, Gpu, Preference, Trace};
 use nearfield_emulator::Emulator;
 use nearfield_kernels::{Float4, Primitive, Ptr};
 
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-struct Rays {
-    points: u64,
-    counts: u64,
-    sums: u64,
-    handle: u64,
-}
-
 /// What a ray finds: number of boxes, sum of their numbers, sum of their instances.
 type Found = (u32, u32, u32);
-
-fn tracing(gpu: &Emulator) -> &dyn RayTracing {
-    gpu.ray_tracing().expect("it is emulated")
-}
 
 /// Numbers in [0, 1) that look random.
 fn random(seed: u32, n: usize) -> Vec<f32> {

@@ -4,12 +4,27 @@
 
 use bytemuck::{Pod, Zeroable};
 use nearfield_core::{Error, Result};
-use nearfield_cuda::gpu::{Gpu, Launch};
+use nearfield_cuda::gpu::{Gpu, Launch, RayTracing};
 use nearfield_emulator::Emulator;
 
 /// An emulator, where tests of it are not ignored.
 pub fn emulator() -> Emulator {
     Emulator::new().expect("kernels were compiled")
+}
+
+/// Parameters of the ray programs of tests: addresses, and what is traced.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+pub struct Rays {
+    pub points: u64,
+    pub counts: u64,
+    pub sums: u64,
+    pub handle: u64,
+}
+
+/// Rays on an emulator.
+pub fn tracing(gpu: &Emulator) -> &dyn RayTracing {
+    gpu.ray_tracing().expect("it is emulated")
 }
 
 /// Address of a new buffer with content.
