@@ -1,12 +1,9 @@
 //! The constants of a device, by measurement: what `nearfield bench auto` does.
 
 use super::{Cost, DeviceProfile, Profile, Survey, trial};
-use crate::{
-    Device, Result, engine,
-    generate::{Generate, Positions},
-};
-use nearfield_core::{Boundary, Dynamics, Engine, Interaction, Method, Plan, Radii, System};
-use std::{collections::BTreeMap, f64::consts::PI};
+use crate::{Device, Result, bench::Start, engine, generate::Generate};
+use nearfield_core::{Dynamics, Engine, Method, Plan, System};
+use std::collections::BTreeMap;
 
 /// Mean numbers of neighbours that are measured.
 const NEIGHBORS: [f64; 4] = [0.5, 8.0, 60.0, 400.0];
@@ -68,13 +65,14 @@ pub fn calibrate(device: Device, quick: bool, progress: &mut dyn FnMut(&str, f64
         for (part, &neighbors) in NEIGHBORS.iter().enumerate() {
             let fraction = (done as f64 + part as f64 / NEIGHBORS.len() as f64) / sizes.len() as f64;
             progress(&format!("{n} particles with {neighbors} neighbours"), fraction);
-            let Some(system) = gas(n, neighbors)? else { continue };
+            let Some(start) = gas(n, neighbors) else { continue };
+            let system = start.build()?;
             let survey = Survey::of(&system);
             for (method, predicted) in present.of(&name).map(|entry| entry.predict(&survey)).unwrap_or_default() {
                 if trial::duration(predicted) > PATIENCE {
                     continue;
                 }
-                samples.extend(measure(&mut *engine, &system, survey, method)?);
+                samples.extend(measure(&mut *engine, &system, &start.dynamics, survey, method)?);
             }
         }
     }
@@ -96,13 +94,18 @@ pub fn calibrate(device: Device, quick: bool, progress: &mut dyn FnMut(&str, f64
 }
 
 /// Nothing where the system is not supported or does not fit.
-fn measure(engine: &mut dyn Engine, system: &System, survey: Survey, method: Method) -> Result<Option<Sample>> {
+fn measure(
+    engine: &mut dyn Engine,
+    system: &System,
+    dynamics: &Dynamics,
+    survey: Survey,
+    method: Method,
+) -> Result<Option<Sample>> {
     let plan = Plan::new(method);
     if engine.supports(system, &plan).is_err() {
         return Ok(None);
     }
-    let dynamics = Dynamics { max_displacement: 0.01, ..Dynamics::nve(1e-3) };
-    match trial::seconds_of_step(engine, system, &dynamics, 0, &plan) {
+    match trial::seconds_of_step(engine, system, dynamics, 0, &plan) {
         Ok(seconds) => Ok(Some(Sample { method, survey, seconds })),
         Err(nearfield_core::Error::OutOfMemory { .. }) => Ok(None),
         Err(error) => Err(error.into()),
@@ -110,23 +113,12 @@ fn measure(engine: &mut dyn Engine, system: &System, survey: Survey, method: Met
 }
 
 /// A periodic gas of density 1; none where its box is too small for the range.
-fn gas(n: usize, neighbors: f64) -> Result<Option<System>> {
-    let cutoff = (neighbors / (4.0 / 3.0 * PI)).cbrt();
-    if 2.0 * cutoff >= (n as f64).cbrt() {
-        return Ok(None);
+fn gas(n: usize, neighbors: f64) -> Option<Start> {
+    let at_rest = Start::uniform(n, neighbors);
+    if 2.0 * at_rest.cutoff >= (n as f64).cbrt() {
+        return None;
     }
-    let generate =
-        Generate { positions: Positions::Disordered, n, density: Some(1.0), temperature: 1.0, ..Generate::default() };
-    let start = generate.build([Boundary::Periodic; 3], 1.0)?;
-    let mut interaction = Interaction::lennard_jones();
-    interaction.types[0].sigma = (cutoff / 2.5) as f32;
-    let mut system = System {
-        sim_box: start.sim_box,
-        particles: start.particles,
-        radii: Radii::Uniform(cutoff as f32),
-        interaction,
-    };
-    system.wrap();
-    system.validate()?;
-    Ok(Some(system))
+    let generate = Generate { temperature: 1.0, ..at_rest.generate };
+    let dynamics = Dynamics { max_displacement: 0.01, ..at_rest.dynamics };
+    Some(Start { generate, dynamics, ..at_rest })
 }

@@ -105,15 +105,13 @@ impl Profile {
 }
 
 impl DeviceProfile {
-    /// Predicted seconds of a step of each method, the quickest first.
+    /// Predicted seconds of a step of each method.
     pub fn predict(&self, survey: &Survey) -> Vec<(Method, f64)> {
         let threads = if self.per_thread { rayon::current_num_threads() as f64 } else { 1.0 };
         let cost = |(name, cost): (&String, &Cost)| {
             let method: Method = name.parse().ok()?;
             Some((method, cost.seconds(method, survey) / threads))
         };
-        let mut predicted: Vec<(Method, f64)> = self.method.iter().filter_map(cost).collect();
-        predicted.sort_by(|a, b| a.1.total_cmp(&b.1));
-        predicted
+        self.method.iter().filter_map(cost).collect()
     }
 }

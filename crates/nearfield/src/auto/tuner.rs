@@ -77,7 +77,8 @@ impl Tuner {
         choice: &mut Choice,
     ) -> bool {
         self.due = false;
-        let survey = Survey::of(system);
+        // The first choice was made from what the system looks like at the start.
+        let survey = choice.survey.filter(|_| done == 0).unwrap_or_else(|| Survey::of(system));
         let mut candidates = self.candidates(engine, system, plan, &survey);
         let affordable = affordable(&candidates, done.max(remaining));
         if affordable < 2 {

@@ -106,7 +106,7 @@ impl Start {
     }
 
     /// Uniform random points of unit density in a periodic box, with `k` neighbours on average.
-    pub(super) fn uniform(n: usize, k: f64) -> Self {
+    pub(crate) fn uniform(n: usize, k: f64) -> Self {
         let positions = Positions::Disordered;
         let generate = Generate { positions, n, density: Some(1.0), temperature: 0.0, ..Generate::default() };
         Self::at_rest(generate, (k / (4.0 / 3.0 * PI)).cbrt(), Boundary::Periodic)
