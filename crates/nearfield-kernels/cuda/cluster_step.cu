@@ -16,8 +16,13 @@ template <class L> __device__ inline void sparse_step(const ClusterStepArgs& a) 
     if (lane < CLUSTERS && own < clusters_of(g.n)) segment = a.listed.segment[own];
     Moving p = {};
     if (i < g.n) p = load_moving(a.particles, i);
-    if (!allowed) return;
-    if (i == 0) a.listed.control->done = a.listed.step;
+    if (!allowed) {
+        // Positions go to and fro. The first step that is not done takes them back to where the first step found them.
+        const bool away = a.listed.index % 2 == 1 && step_of(a.listed) == a.listed.control->next;
+        if (away && i < g.n) a.next[i] = p.position;
+        return;
+    }
+    if (i == 0) a.listed.control->next = step_of(a.listed) + 1;
     u32 lists = __ballot_sync(ALL_LANES, segment.begin != segment.end);
     float4 force = make_float4(0.0f, 0.0f, 0.0f, 0.0f);
     if (lists == 0) {

@@ -73,7 +73,7 @@ impl Loaded {
         // Places now are input indices, since the system was just loaded.
         let mut permutation = Buffer::new(&self.gpu, "a memory order");
         permutation.upload(&order.ids)?;
-        self.state.permute(permutation.ptr(), &mut self.results.force)?;
+        self.state.permute(&*self.gpu, permutation.ptr(), &mut self.results.force)?;
         self.sorted_at = order.sorted_at;
         Ok(())
     }
