@@ -5,7 +5,8 @@ mod emulated;
 
 use nearfield_conformance::cases;
 use nearfield_core::{
-    Boundary, Dynamics, Engine, Ensemble, Interaction, Method, Particles, PerParticle, Plan, Quantities, Radii, System, oracle,
+    Boundary, Dynamics, Engine, Ensemble, Interaction, Method, Particles, PerParticle, Plan, Quantities, Radii, System,
+    oracle,
     potentials::{Potential, Wca},
 };
 use nearfield_cuda::{CudaEngine, Variant};

@@ -3,10 +3,10 @@
 use crate::{
     ByForce, Kernel, Primitive, RayProgram,
     layouts::{
-        AdvanceRays, BodiesArgs, BoundsArgs, BoxesArgs, CellStepArgs, ClusterControlArgs, ClusterListArgs, ClusterStepArgs,
-        ClustersMovedArgs, FinishExactArgs, ForceRays, GatherArgs, IntegrateArgs, ListArgs, ListRays, ListedArgs,
-        MortonArgs, MotionArgs, NumberArgs, PermuteArgs, RescaleArgs, RowsArgs, SampleArgs, ScanArgs, SortArgs,
-        TotalsArgs,
+        AdvanceRays, BodiesArgs, BoundsArgs, BoxesArgs, CellStepArgs, ClusterControlArgs, ClusterListArgs,
+        ClusterStepArgs, ClustersMovedArgs, FinishExactArgs, ForceRays, GatherArgs, IntegrateArgs, ListArgs, ListRays,
+        ListedArgs, MortonArgs, MotionArgs, NumberArgs, PermuteArgs, RescaleArgs, RowsArgs, SampleArgs, ScanArgs,
+        SortArgs, TotalsArgs,
     },
 };
 

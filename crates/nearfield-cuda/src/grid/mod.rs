@@ -70,13 +70,7 @@ impl Grid {
     ///
     /// # Errors
     /// As [`Gpu::allocate`] and [`Queue::launch`].
-    pub unsafe fn build(
-        &mut self,
-        queue: &dyn Queue,
-        position: Ptr<Float4>,
-        n: usize,
-        variable: bool,
-    ) -> Result<()> {
+    pub unsafe fn build(&mut self, queue: &dyn Queue, position: Ptr<Float4>, n: usize, variable: bool) -> Result<()> {
         self.n = n;
         for buffer in [&mut self.cell, &mut self.rank, &mut self.particle] {
             buffer.resize(n)?;
