@@ -171,33 +171,44 @@ fn pairs_of_atoms(spacing: f32) -> System {
     system
 }
 
-/// Stretches of lists and steps, steps by short ones, and steps one by one, between which lists are not made at the same
-/// steps; with random numbers that belong to a step.
+/// Stretches of lists and steps or of cells and steps, short ones, and steps one by one, between which lists are not made
+/// at the same steps; with random numbers that belong to a step.
 fn steps_do_not_depend_on_how_they_are_enqueued() {
     let ensemble = Ensemble::Langevin { temperature: 0.05, friction: 0.1 };
     let (nve, langevin) = (Dynamics::nve(0.004), Dynamics { ensemble, seed: 9, ..Dynamics::nve(0.004) });
-    for (spacing, variant) in [(3.5, Variant::List), (8.0, Variant::SparseList)] {
+    let clusters = |skin| Plan { skin, ..Plan::new(Method::Cluster) };
+    let cases = [
+        (3.5, clusters(0.4), Some(Variant::List)),
+        (8.0, clusters(0.4), Some(Variant::SparseList)),
+        (8.0, clusters(0.0), Some(Variant::Pairs)),
+        (8.0, Plan::new(Method::Cell), None),
+    ];
+    for (spacing, plan, variant) in cases {
         let system = pairs_of_atoms(spacing);
         for dynamics in [&nve, &langevin] {
             let run = |record: bool, calls: &[u64]| {
-                let mut engine = loaded(&system, &Plan { skin: 0.4, ..Plan::new(Method::Cluster) });
+                let mut engine = loaded(&system, &plan);
                 engine.record_history(record);
                 let mut step = 0;
                 for &steps in calls {
                     engine.advance(dynamics, step, steps, Quantities::FORCES).expect("a run");
                     step += steps;
                 }
-                assert_eq!(engine.cluster_variant(), Some(variant));
+                assert_eq!(engine.cluster_variant(), variant);
                 let report = engine.report();
                 assert_eq!(report.evaluations, step + 1);
-                assert!((12..60).contains(&report.list_builds), "{report:?}");
+                if variant.is_some_and(Variant::uses_list) {
+                    assert!((12..60).contains(&report.list_builds), "{report:?}");
+                } else {
+                    assert_eq!(report.builds, step + 1);
+                }
                 let mut end = Particles::default();
                 engine.snapshot(&mut end).expect("a copy");
                 end
             };
-            let one_by_one = run(true, &[90]);
-            for calls in [&[90][..], &[1, 2, 3, 17, 5, 62], &[1; 90]] {
-                assert!(run(false, calls) == one_by_one, "{variant}, {calls:?}");
+            let one_by_one = run(true, &[130]);
+            for calls in [&[130][..], &[1, 2, 3, 17, 5, 102], &[1; 130]] {
+                assert!(run(false, calls) == one_by_one, "{variant:?}, {calls:?}");
             }
         }
     }
