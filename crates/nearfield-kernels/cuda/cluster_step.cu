@@ -6,7 +6,7 @@
 // Clusters of a warp, a lane for each particle.
 #define CLUSTERS (WARP / CLUSTER)
 
-template <class L> __device__ inline void sparse_step(const ClusterStepArgs& a) {
+template <class L, bool NOISE> __device__ inline void sparse_step(const ClusterStepArgs& a) {
     __shared__ u32 entries[WARPS_PER_BLOCK * SEGMENT_ENTRIES];
     const GatherArgs& g = a.listed.gather;
     const u32 i = thread_index(), warp = i / WARP, lane = i % WARP, own = warp * CLUSTERS + lane;
@@ -21,7 +21,7 @@ template <class L> __device__ inline void sparse_step(const ClusterStepArgs& a) 
     u32 lists = __ballot_sync(ALL_LANES, segment.begin != segment.end);
     float4 force = make_float4(0.0f, 0.0f, 0.0f, 0.0f);
     if (lists == 0) {
-        if (i < g.n) move_particle(a, i, p, force);
+        if (i < g.n) move_particle<NOISE>(a, i, p, force);
         return;
     }
 #pragma unroll 1
@@ -37,13 +37,13 @@ template <class L> __device__ inline void sparse_step(const ClusterStepArgs& a) 
                                              __shfl_sync(ALL_LANES, z, source), 0.0f);
         if (lane / CLUSTER == c) force = of_source;
     }
-    if (i < g.n) move_particle(a, i, load_moving(a.particles, i), force);
+    if (i < g.n) move_particle<NOISE>(a, i, load_moving(a.particles, i), force);
 }
 
 KERNEL_MIN_BLOCKS(step_sparse_uniform, ClusterStepArgs, WARPS_PER_BLOCK* WARP, 8) {
-    sparse_step<UniformLennardJones>(a);
+    sparse_step<UniformLennardJones, false>(a);
 }
 
 KERNEL(step_sparse_any, ClusterStepArgs, WARPS_PER_BLOCK* WARP) {
-    sparse_step<AnyLaw>(a);
+    sparse_step<AnyLaw, true>(a);
 }

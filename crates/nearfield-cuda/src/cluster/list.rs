@@ -10,7 +10,7 @@ use bytemuck::Zeroable;
 use nearfield_core::{Report, Result};
 use nearfield_kernels::{
     Float4, Kernel, Ptr,
-    kernels::{self, CLUSTER, LISTED_FORCES, LISTED_PAIRS, SEGMENT, STEP_SPARSE},
+    kernels::{self, CLUSTER, LISTED_FORCES, LISTED_PAIRS, MOVE_LISTED, SEGMENT, STEP_SPARSE},
     layouts::{
         self, ClusterControl, ClusterListArgs, ClusterStepArgs, ClustersMovedArgs, GatherArgs, Integrator, Law,
         ListedArgs, Results, Segment, Status,
@@ -251,10 +251,11 @@ impl ClusterList {
             if self.once {
                 self.add_pairs(LISTED_PAIRS.choose(&physics.law, false, false), n, &arguments.listed)?;
                 // SAFETY: all arrays of particles have n elements.
-                unsafe { launch(&*self.gpu, kernels::MOVE_LISTED, n as u64, &arguments)? };
+                unsafe { launch(&*self.gpu, MOVE_LISTED.choose(&integrator), n as u64, &arguments)? };
             } else {
+                let kernel = STEP_SPARSE.choose(&integrator).choose(&physics.law, false, false);
                 // SAFETY: as above.
-                unsafe { launch(&*self.gpu, STEP_SPARSE.choose(&physics.law, false, false), n as u64, &arguments)? };
+                unsafe { launch(&*self.gpu, kernel, n as u64, &arguments)? };
                 std::mem::swap(&mut state.moving.position, spare);
             }
         }

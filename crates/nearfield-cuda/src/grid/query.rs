@@ -133,8 +133,9 @@ pub(crate) unsafe fn step(gpu: &dyn Gpu, grid: &Grid, law: &Law, step: &CellStep
         slack: grid.plan.slack,
     };
     let arguments = CellStepArgs { gather, integrator, particles, status, step: number };
+    let kernel = kernels::CELL_STEP.choose(&integrator).choose(law, false, false);
     // SAFETY: the caller's promise.
-    unsafe { launch(gpu, kernels::CELL_STEP.choose(law, false, false), grid.n as u64, &arguments) }
+    unsafe { launch(gpu, kernel, grid.n as u64, &arguments) }
 }
 
 /// A step of particles in cells.
