@@ -37,9 +37,10 @@ template <bool NOISE> __device__ inline void move_all(const ClusterStepArgs& a) 
     const u32 i = thread_index();
     if (i >= a.particles.n) return;
     float4& sum = a.listed.gather.results.force[i];
-    const float4 force = sum;
+    const float4 force = sum, reference = a.reference[i];
+    const Moving p = load_moving(a.particles, i);
     sum = make_float4(0.0f, 0.0f, 0.0f, 0.0f);
-    move_particle<NOISE>(a, i, load_moving(a.particles, i), force);
+    move_particle<NOISE>(a, i, p, force, reference);
 }
 
 // The rest of a step and the beginning of the next.

@@ -16,13 +16,13 @@ __device__ inline bool begin_step(const ClusterStepArgs& a) {
     return true;
 }
 
-// The rest of a step of particle `i`, `p`, and the beginning of the next.
+// The rest of a step of particle `i`, `p`, which was at `reference` when the list was made, and the beginning of the
+// next.
 template <bool NOISE>
-__device__ inline void move_particle(const ClusterStepArgs& a, u32 i, Moving p, const float4& force) {
+__device__ inline void move_particle(const ClusterStepArgs& a, u32 i, Moving p, const float4& force,
+                                     const float4& reference) {
     Particles to = a.particles;
     to.position = a.next;
-    // Read before anything is written, so that it need not be waited for then.
-    const float4 reference = a.reference[i];
     const bool moves = advance<NOISE>(a.integrator, a.status, a.particles, i, a.listed.step, p, force);
     store_moving(to, i, p);
     if (moves && has_moved(a.integrator.space, reference, p.position, a.limit2)) {
