@@ -35,18 +35,23 @@ template <class L, bool NOISE> __device__ inline void sparse_step(const ClusterS
     const u32 i = thread_index();
     if (i >= a.particles.n) return;
     // All that a step without neighbours reads is on its way before anything is waited for.
-    const u64 rebuild_at = a.listed.control->rebuild_at;
+    const bool allowed = serves(a.listed);
     const Segment segment = a.listed.segment[i / CLUSTER];
     const Moving p = load_moving(a.particles, i);
     const float4 reference = a.reference[i];
-    if (rebuild_at <= a.listed.step) return;
-    if (i == 0) a.listed.control->done = a.listed.step;
+    if (!allowed) {
+        // Positions go to and fro. The first step that is not done takes them back to where the first step found them.
+        const bool away = a.listed.index % 2 == 1 && step_of(a.listed) == a.listed.control->next;
+        if (away) a.next[i] = p.position;
+        return;
+    }
+    if (i == 0) a.listed.control->next = step_of(a.listed) + 1;
     float4 force = make_float4(0.0f, 0.0f, 0.0f, 0.0f);
     if (segment.begin != segment.end) force = listed_force<L>(a.listed, segment, i, p);
     move_particle<NOISE>(a, i, p, force, reference);
 }
 
-KERNEL_MIN_BLOCKS(step_sparse_uniform, ClusterStepArgs, 128, 10) {
+KERNEL_MIN_BLOCKS(step_sparse_uniform, ClusterStepArgs, 128, 8) {
     sparse_step<UniformLennardJones, false>(a);
 }
 

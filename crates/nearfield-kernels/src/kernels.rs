@@ -3,10 +3,10 @@
 use crate::{
     ByForce, ByMotion, Kernel, Primitive, RayProgram,
     layouts::{
-        AdvanceRays, BodiesArgs, BoundsArgs, BoxesArgs, CellStepArgs, ClusterListArgs, ClusterStepArgs,
-        ClustersMovedArgs, FinishExactArgs, ForceRays, GatherArgs, IntegrateArgs, ListArgs, ListRays, ListedArgs,
-        MortonArgs, MotionArgs, NumberArgs, PermuteArgs, RescaleArgs, RowsArgs, SampleArgs, ScanArgs, SortArgs,
-        TotalsArgs,
+        AdvanceRays, BodiesArgs, BoundsArgs, BoxesArgs, CellStepArgs, ClusterControlArgs, ClusterListArgs,
+        ClusterStepArgs, ClustersMovedArgs, FinishExactArgs, ForceRays, GatherArgs, IntegrateArgs, ListArgs, ListRays,
+        ListedArgs, MortonArgs, MotionArgs, NumberArgs, PermuteArgs, RescaleArgs, RowsArgs, SampleArgs, ScanArgs,
+        SortArgs, TotalsArgs,
     },
 };
 
@@ -80,6 +80,10 @@ pub const CLUSTER_FORCES: ByForce<Kernel<GatherArgs>> = ByForce {
 pub const LIST_CLUSTERS: Kernel<ClusterListArgs> = Kernel::new("cluster_list", "list_clusters", 128);
 /// Most chunks of a segment of these lists but the last.
 pub const SEGMENT: usize = 15;
+/// Says which steps may be made by lists.
+pub const BEGIN_STEPS: Kernel<ClusterControlArgs> = Kernel::new("cluster_list", "begin_steps", 32);
+/// Notes how the list has served, and that there is none now.
+pub const BEGIN_LIST: Kernel<ClusterControlArgs> = Kernel::new("cluster_list", "begin_list", 32);
 /// Whether lists serve the present positions.
 pub const CLUSTERS_MOVED: Kernel<ClustersMovedArgs> = Kernel::new("cluster_list", "clusters_moved", 256);
 

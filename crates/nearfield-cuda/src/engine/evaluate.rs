@@ -57,25 +57,22 @@ impl Loaded {
     /// particles are at then.
     pub fn evaluate_and_step(&mut self, integrator: &Integrator, step: u64, before: u64) -> Result<u64> {
         self.prepare(step)?;
-        loop {
-            if self.step_by_cells(integrator, step)? {
-                return Ok(step + 1);
-            }
-            let Self { physics, state, structure, next_position, totalizer, report, .. } = self;
-            let Some(clusters) = structure.clusters_mut().filter(|clusters| clusters.cells().is_none()) else {
-                self.query(Quantities::FORCES)?;
-                return Ok(step);
-            };
-            let (list, grid) = clusters.list_and_grid();
-            let (integrator, status) = (integrator.layout(), totalizer.status().ptr());
+        if self.step_by_cells(integrator, step)? {
+            return Ok(step + 1);
+        }
+        let replan = self.planned_at.map_or(step, |then| then + self.plan_interval);
+        let Self { physics, state, structure, next_position, totalizer, report, .. } = self;
+        let (integrator, status) = (integrator.layout(), totalizer.status().ptr());
+        if let Some(clusters) = structure.clusters_mut().filter(|clusters| clusters.variant().uses_list()) {
             let query = StepQuery { physics, state, spare: next_position, integrator, status };
-            let made = list.steps(query, grid, step, before - step)?;
+            let made = clusters.steps(query, step..before, replan, report)?;
             if made > 0 {
                 self.account(made)?;
                 return Ok(step + made);
             }
-            clusters.settle(physics, state, report)?;
         }
+        self.query(Quantities::FORCES)?;
+        Ok(step)
     }
 
     /// A step by sparse cells of the present positions, where there are any.
@@ -161,14 +158,14 @@ impl Loaded {
             Order::Morton => {
                 let mut morton = MortonOrder::new(gpu);
                 let order = morton.sort(state, &surveyor.survey(state)?.bounds)?.ptr();
-                state.permute(order, &mut self.results.force)
+                state.permute(&**gpu, order, &mut self.results.force)
             }
             Order::Cell => {
                 let mut grid = Grid::new(gpu);
                 grid.plan(&physics.survey(&surveyor.survey(state)?));
                 // SAFETY: the state's positions are n.
-                unsafe { grid.build(state.moving.position.ptr(), state.len(), physics.law.variable != 0)? };
-                state.permute(grid.order().ptr(), &mut self.results.force)
+                unsafe { grid.build(&**gpu, state.moving.position.ptr(), state.len(), physics.law.variable != 0)? };
+                state.permute(&**gpu, grid.order().ptr(), &mut self.results.force)
             }
         }
     }

@@ -1,8 +1,8 @@
 //! A loaded system.
 
 use super::{
-    list::Lister, motion::Reference, order, physics::Physics, results::Results, state::State, structure::Structure,
-    survey::Surveyor, timeline::Timeline, totals::Totalizer,
+    integrate::Constants, list::Lister, motion::Reference, order, physics::Physics, results::Results, state::State,
+    structure::Structure, survey::Surveyor, timeline::Timeline, totals::Totalizer,
 };
 use crate::{Buffer, Gpu};
 use nearfield_core::{Plan, Report, Result, System, engine::MemoryOrder, maintenance::Policy};
@@ -18,6 +18,7 @@ pub(crate) struct Loaded {
     pub results: Results,
     /// Where positions go that move while others are still looked at.
     pub next_position: Buffer<Float4>,
+    pub constants: Constants,
     pub totalizer: Totalizer,
     pub structure: Structure,
     pub policy: Box<dyn Policy>,
@@ -50,6 +51,7 @@ impl Loaded {
             state: State::new(gpu, system)?,
             results: Results::new(gpu),
             next_position: Buffer::new(gpu, "next positions"),
+            constants: Constants::new(gpu),
             totalizer: Totalizer::new(gpu, &system.interaction)?,
             structure: Structure::new(gpu, plan, &physics)?,
             policy: plan.maintenance.policy(),
@@ -73,7 +75,7 @@ impl Loaded {
         // Places now are input indices, since the system was just loaded.
         let mut permutation = Buffer::new(&self.gpu, "a memory order");
         permutation.upload(&order.ids)?;
-        self.state.permute(permutation.ptr(), &mut self.results.force)?;
+        self.state.permute(&*self.gpu, permutation.ptr(), &mut self.results.force)?;
         self.sorted_at = order.sorted_at;
         Ok(())
     }

@@ -101,7 +101,7 @@ impl Structure {
             Self::Cells(grid) => {
                 let particles = scene.particles;
                 // SAFETY: the scene's positions are n.
-                unsafe { grid.build(particles.position, particles.n as usize, scene.law.variable != 0)? };
+                unsafe { grid.build(&**scene.gpu, particles.position, particles.n as usize, scene.law.variable != 0)? };
                 Ok(Updated { built: true, forced: false })
             }
             Self::Bodies(bvh) => bvh.update(action, scene),
