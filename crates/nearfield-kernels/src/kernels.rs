@@ -5,8 +5,8 @@ use crate::{
     layouts::{
         AdvanceRays, BodiesArgs, BoundsArgs, BoxesArgs, CellStepArgs, ClusterControlArgs, ClusterListArgs,
         ClusterStepArgs, ClustersMovedArgs, FinishExactArgs, ForceRays, GatherArgs, IntegrateArgs, ListArgs, ListRays,
-        ListedArgs, MortonArgs, MotionArgs, NumberArgs, PermuteArgs, RescaleArgs, RowsArgs, SampleArgs, ScanArgs,
-        SortArgs, TotalsArgs,
+        ListedArgs, MortonArgs, MotionArgs, NumberArgs, PermuteArgs, QueryArgs, RescaleArgs, RowsArgs, SampleArgs,
+        ScanArgs, SortArgs, TotalsArgs,
     },
 };
 
@@ -159,6 +159,11 @@ pub const BRUTE_LIST_RADII: ListKernels = ListKernels {
     count: Kernel::new("lists", "brute_list_count_radii", 128),
     fill: Kernel::new("lists", "brute_list_fill_radii", 128),
 };
+
+/// Entries of the row of each query among points in cells; a warp for each [`CLUSTER`].
+pub const QUERY_COUNT: Kernel<QueryArgs> = Kernel::new("queries", "query_count", 128);
+/// These rows.
+pub const QUERY_FILL: Kernel<QueryArgs> = Kernel::new("queries", "query_fill", 128);
 
 /// Boxes around particles and ghosts.
 pub const FIT_BOXES: Kernel<BoxesArgs> = Kernel::new("boxes", "fit_boxes", 256);

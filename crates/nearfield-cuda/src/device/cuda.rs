@@ -78,6 +78,11 @@ impl CudaDevice {
         self.tracing.get().and_then(|tracing| tracing.as_ref().ok()).map(Optix::take_messages).unwrap_or_default()
     }
 
+    /// Number of sequences that are kept as CUDA graphs now.
+    pub fn n_graphs(&self) -> usize {
+        self.graphs.lock().unwrap_or_else(PoisonError::into_inner).count()
+    }
+
     fn kernel(&self, module: &'static str, name: &'static str) -> Result<CudaFunction> {
         let mut loaded = self.loaded.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(kernel) = loaded.kernels.get(name) {

@@ -27,6 +27,11 @@ pub(super) struct Graph(sys::CUgraphExec);
 unsafe impl Send for Graph {}
 
 impl Graphs {
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.0.iter().filter(|remembered| remembered.graph.is_some()).count()
+    }
+
     /// The graph of a sequence, by `make` where it comes for the second time; none the first time or where the driver
     /// refuses: the sequence is then to be enqueued part by part. Before a graph is forgotten, `wait` is called.
     pub fn of<E>(

@@ -1,8 +1,8 @@
 //! A loaded system.
 
 use super::{
-    integrate::Constants, list::Lister, motion::Reference, order, physics::Physics, results::Results, state::State,
-    structure::Structure, survey::Surveyor, timeline::Timeline, totals::Totalizer,
+    integrate::Constants, list::Lister, motion::Reference, order, physics::Physics, query::Answers, results::Results,
+    state::State, structure::Structure, survey::Surveyor, timeline::Timeline, totals::Totalizer,
 };
 use crate::{Buffer, Gpu};
 use nearfield_core::{Plan, Report, Result, System, engine::MemoryOrder, maintenance::Policy};
@@ -27,6 +27,8 @@ pub(crate) struct Loaded {
     pub surveyor: Surveyor,
     /// Made when a list is first asked for.
     pub lister: Option<Lister>,
+    /// Made when points are first queried.
+    pub answers: Option<Answers>,
     pub timeline: Timeline,
     pub report: Report,
     pub record_history: bool,
@@ -58,6 +60,7 @@ impl Loaded {
             reference: Reference::new(gpu),
             surveyor: Surveyor::new(gpu),
             lister: None,
+            answers: None,
             timeline: Timeline::default(),
             report: Report::default(),
             record_history: false,

@@ -1,11 +1,13 @@
 //! Cells on the device: particles sorted by cell, so that a warp takes neighbours and finds candidates in rows.
 
+mod bipartite;
 mod bulk;
 mod classes;
 mod plan;
 mod query;
 mod width;
 
+pub use bipartite::{PointQuery, count as count_queries, list as list_queries};
 pub use plan::{CellPlan, Survey};
 pub use query::{Candidates, ForceQuery, ListQuery, Pairs, count, forces, list};
 pub(crate) use query::{CellStep, step};

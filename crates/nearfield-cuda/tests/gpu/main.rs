@@ -8,11 +8,13 @@
 //! | `melt::` | energy and momentum over `NEARFIELD_MELT_STEPS` steps (2,000 unless said) |
 //! | `checkpoints::` | runs that change between GPU and CPU |
 //! | `memory::` | what does not fit |
+//! | `sequences::` | work kept as CUDA graphs |
 
 mod checkpoints;
 mod melt;
 mod memory;
 mod neighbors;
+mod sequences;
 mod small;
 
 use libtest_mimic::{Arguments, Trial};
@@ -91,6 +93,11 @@ fn main() {
     trials.add_for("checkpoints::a_run_goes_on_from_cpu_to_gpu", plans::each_method(), checkpoints::from_cpu_to_gpu);
     let cell = vec![Plan::new(Method::Cell)];
     trials.add_for("memory::a_list_that_does_not_fit_is_an_error", cell, memory::a_list_that_does_not_fit_is_an_error);
+    trials.add(
+        "sequences::a_sequence_that_comes_again_is_kept_as_a_graph",
+        Needs::Cuda,
+        sequences::a_sequence_that_comes_again_is_kept_as_a_graph,
+    );
     libtest_mimic::run(&arguments, trials.trials).exit();
 }
 

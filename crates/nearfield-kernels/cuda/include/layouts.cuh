@@ -450,6 +450,18 @@ struct ListArgs {
 };
 static_assert(sizeof(ListArgs) == 736, "ListArgs differs between host and device");
 
+// Arguments of `query_*`: lists of queries among points of another set.
+struct QueryArgs {
+    // The points, in cells of one class, with rows by query; [`ListArgs::n`] is the number of queries. Radii are per
+    // query, whatever the law says.
+    ListArgs list;
+    // Queries in an order that keeps near ones together, with radii in w.
+    float4 *query;
+    // Row of each of these.
+    u32 *row;
+};
+static_assert(sizeof(QueryArgs) == 752, "QueryArgs differs between host and device");
+
 // Consecutive chunks of 32 entries of a cluster's list.
 struct Segment {
     // First chunk.

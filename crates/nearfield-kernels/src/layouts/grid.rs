@@ -149,4 +149,15 @@ layouts! {
         /// Zero.
         pub unused: u32,
     }
+
+    /// Arguments of `query_*`: lists of queries among points of another set.
+    pub struct QueryArgs {
+        /// The points, in cells of one class, with rows by query; [`ListArgs::n`] is the number of queries. Radii are per
+        /// query, whatever the law says.
+        pub list: ListArgs,
+        /// Queries in an order that keeps near ones together, with radii in w.
+        pub query: Ptr<Float4>,
+        /// Row of each of these.
+        pub row: Ptr<u32>,
+    }
 }
