@@ -1,7 +1,7 @@
 //! Every kernel, by the structure it takes.
 
 use crate::{
-    ByForce, Kernel, Primitive, RayProgram,
+    ByForce, ByMotion, Kernel, Primitive, RayProgram,
     layouts::{
         AdvanceRays, BodiesArgs, BoundsArgs, BoxesArgs, CellStepArgs, ClusterControlArgs, ClusterListArgs,
         ClusterStepArgs, ClustersMovedArgs, FinishExactArgs, FirstStepArgs, ForceRays, GatherArgs, IntegrateArgs,
@@ -64,7 +64,7 @@ pub const CELL_FORCES: ByForce<Kernel<GatherArgs>> = ByForce {
 
 /// Forces and a step, by cells where most particles have no neighbours and one cutoff serves all pairs; a thread for each
 /// particle. In f32 and without energies.
-pub const CELL_STEP: ByForce<Kernel<CellStepArgs>> =
+pub const CELL_STEP: ByMotion<ByForce<Kernel<CellStepArgs>>> =
     steps(Kernel::new("cell_step", "cell_step_uniform", 128), Kernel::new("cell_step", "cell_step_any", 128));
 
 /// Says which step [`CELL_STEP`] begins with.
@@ -109,14 +109,18 @@ pub const LISTED_PAIRS: ByForce<Kernel<ListedArgs>> = ByForce {
     ..LISTED_FORCES
 };
 /// A step by the forces of [`LISTED_PAIRS`], which become zero.
-pub const MOVE_LISTED: Kernel<ClusterStepArgs> = Kernel::new("listed_pairs", "move_listed", 256);
+pub const MOVE_LISTED: ByMotion<Kernel<ClusterStepArgs>> = ByMotion {
+    newton: Kernel::new("listed_pairs", "move_listed", 256),
+    any: Kernel::new("listed_pairs", "move_listed_any", 256),
+};
 
 /// Forces and a step, by lists most of which are empty; a thread for each particle. In f32 and without energies.
-pub const STEP_SPARSE: ByForce<Kernel<ClusterStepArgs>> =
+pub const STEP_SPARSE: ByMotion<ByForce<Kernel<ClusterStepArgs>>> =
     steps(Kernel::new("cluster_step", "step_sparse_uniform", 128), Kernel::new("cluster_step", "step_sparse_any", 128));
 
-const fn steps<A>(uniform_lj: Kernel<A>, any: Kernel<A>) -> ByForce<Kernel<A>> {
-    ByForce { fast: any, energy: any, exact: any, exact_energy: any, uniform_lj, scaled_lj: any }
+const fn steps<A>(uniform_lj: Kernel<A>, any: Kernel<A>) -> ByMotion<ByForce<Kernel<A>>> {
+    let always = ByForce { fast: any, energy: any, exact: any, exact_energy: any, uniform_lj: any, scaled_lj: any };
+    ByMotion { newton: ByForce { uniform_lj, ..always }, any: always }
 }
 
 /// Forces by testing all pairs; a warp for each [`CLUSTER`].

@@ -10,7 +10,7 @@ use bytemuck::Zeroable;
 use nearfield_core::{Report, Result};
 use nearfield_kernels::{
     Float4, Kernel, Ptr,
-    kernels::{self, CLUSTER, LISTED_FORCES, LISTED_PAIRS, SEGMENT, STEP_SPARSE},
+    kernels::{self, CLUSTER, LISTED_FORCES, LISTED_PAIRS, MOVE_LISTED, SEGMENT, STEP_SPARSE},
     layouts::{
         self, ClusterControl, ClusterControlArgs, ClusterListArgs, ClusterStepArgs, ClustersMovedArgs, GatherArgs,
         Integrator, Law, ListedArgs, Results, Segment, Status,
@@ -292,15 +292,16 @@ impl ClusterList {
             if self.once {
                 add_pairs(queue, LISTED_PAIRS.choose(&physics.law, false, false), &arguments.listed)?;
                 // SAFETY: all arrays of particles have n elements.
-                unsafe { launch(queue, kernels::MOVE_LISTED, n, &arguments)? };
+                unsafe { launch(queue, MOVE_LISTED.choose(integrator), n, &arguments)? };
                 continue;
             }
             let (from, to) = if index % 2 == 0 { (position, spare.ptr()) } else { (spare.ptr(), position) };
             arguments.listed.gather.grid.slot = from;
             arguments.particles.position = from;
             arguments.next = to;
+            let kernel = STEP_SPARSE.choose(integrator).choose(&physics.law, false, false);
             // SAFETY: as above.
-            unsafe { launch(queue, STEP_SPARSE.choose(&physics.law, false, false), n, &arguments)? };
+            unsafe { launch(queue, kernel, n, &arguments)? };
         }
         Ok(())
     }

@@ -76,7 +76,8 @@ impl CellStepper {
         };
         let first = self.first.ptr();
         let arguments = CellStepArgs { gather, integrator, particles, status, first, index, unused: 0 };
+        let kernel = kernels::CELL_STEP.choose(&integrator).choose(&law, false, false);
         // SAFETY: the promise of the caller of `enqueue`.
-        unsafe { launch(queue, kernels::CELL_STEP.choose(&law, false, false), grid.n as u64, &arguments) }
+        unsafe { launch(queue, kernel, grid.n as u64, &arguments) }
     }
 }

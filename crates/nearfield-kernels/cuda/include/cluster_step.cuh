@@ -17,14 +17,15 @@ __device__ inline bool begin_step(const ClusterStepArgs& a) {
     return true;
 }
 
-// The rest of a step of particle `i`, `p`, and the beginning of the next.
-__device__ inline void move_particle(const ClusterStepArgs& a, u32 i, Moving p, const float4& force) {
+// The rest of a step of particle `i`, `p`, which was at `reference` when the list was made, and the beginning of the
+// next.
+template <bool NOISE>
+__device__ inline void move_particle(const ClusterStepArgs& a, u32 i, Moving p, const float4& force,
+                                     const float4& reference) {
     Particles to = a.particles;
     to.position = a.next;
-    // Read before anything is written, so that it need not be waited for then.
-    const float4 reference = a.reference[i];
     const u64 step = step_of(a.listed);
-    const bool moves = advance(a.integrator, a.status, a.particles.id, i, step, p, force);
+    const bool moves = advance<NOISE>(a.integrator, a.status, a.particles, i, step, p, force);
     store_moving(to, i, p);
     if (moves && has_moved(a.integrator.space, reference, p.position, a.limit2)) {
         atomicMin(&a.listed.control->rebuild_at, step + 1);
