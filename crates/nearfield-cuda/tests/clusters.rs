@@ -6,7 +6,7 @@ mod emulated;
 use nearfield_conformance::cases;
 use nearfield_core::{
     Boundary, Dynamics, Engine, Ensemble, Interaction, Method, Particles, PerParticle, Plan, Quantities, Radii, System,
-    oracle,
+    Truncation, oracle,
     potentials::{Potential, Wca},
 };
 use nearfield_cuda::{CudaEngine, Variant};
@@ -157,12 +157,12 @@ fn follows_all_pairs(system: &System, plan: &Plan, tolerance: f32) -> CudaEngine
 
 /// Two atoms at each point of a lattice, all on their way through the box: nobody ever has more than one neighbour, so
 /// sums are the same to the bit in any order.
-fn pairs_of_atoms(spacing: f32) -> System {
+fn pairs_of_atoms(spacing: f32, truncation: Truncation) -> System {
     let sim_box = cases::cube(4.0 * spacing, [Boundary::Periodic; 3]);
     let of = |k: usize| [k % 4, k / 4 % 4, k / 16].map(|k| (k as f32 + 0.5) * spacing);
     let atoms = (0..64).flat_map(|k| [of(k), [of(k)[0] + 1.1, of(k)[1], of(k)[2]]]).collect();
     let mut system = cases::soft(sim_box, atoms, Radii::Uniform(1.5));
-    system.interaction = Interaction::lennard_jones();
+    system.interaction = Interaction { truncation, ..Interaction::lennard_jones() };
     cases::thermalize(&mut system, 0.05, &mut cases::rng(5));
     for i in 0..system.particles.len() {
         let [x, y, z] = system.particles.velocity.get(i);
@@ -175,7 +175,9 @@ fn pairs_of_atoms(spacing: f32) -> System {
 /// at the same steps; with random numbers that belong to a step.
 fn steps_do_not_depend_on_how_they_are_enqueued() {
     let ensemble = Ensemble::Langevin { temperature: 0.05, friction: 0.1 };
-    let (nve, langevin) = (Dynamics::nve(0.004), Dynamics { ensemble, seed: 9, ..Dynamics::nve(0.004) });
+    let langevin = Dynamics { ensemble, seed: 9, ..Dynamics::nve(0.004) };
+    // Plain Lennard-Jones is not computed alike with and without random numbers.
+    let motions = [(Dynamics::nve(0.004), Truncation::Cut), (langevin, Truncation::Force)];
     let clusters = |skin| Plan { skin, ..Plan::new(Method::Cluster) };
     let cases = [
         (3.5, clusters(0.4), Some(Variant::List)),
@@ -184,8 +186,8 @@ fn steps_do_not_depend_on_how_they_are_enqueued() {
         (8.0, Plan::new(Method::Cell), None),
     ];
     for (spacing, plan, variant) in cases {
-        let system = pairs_of_atoms(spacing);
-        for dynamics in [&nve, &langevin] {
+        for (dynamics, truncation) in &motions {
+            let system = pairs_of_atoms(spacing, *truncation);
             let run = |record: bool, calls: &[u64]| {
                 let mut engine = loaded(&system, &plan);
                 engine.record_history(record);
