@@ -9,6 +9,7 @@ mod steps;
 mod width;
 
 pub use bipartite::{PointQuery, count as count_queries, list as list_queries};
+pub(crate) use plan::SPARSE;
 pub use plan::{CellPlan, Survey};
 pub use query::{Candidates, ForceQuery, ListQuery, Pairs, count, forces, list};
 pub(crate) use steps::{CellStepper, CellSteps};
