@@ -31,6 +31,8 @@ pub struct Grid {
     plan: CellPlan,
     n: usize,
     count: Buffer<u32>,
+    /// Number of counts that are zero between builds.
+    clean: usize,
     start: Buffer<u32>,
     cell: Buffer<u32>,
     rank: Buffer<u32>,
@@ -47,6 +49,7 @@ impl Grid {
             plan: CellPlan::default(),
             n: 0,
             count: buffer(),
+            clean: 0,
             start: buffer(),
             cell: buffer(),
             rank: buffer(),
@@ -81,22 +84,30 @@ impl Grid {
         }
         self.slot.resize(n)?;
         self.count.resize_with_room(self.plan.n_cells)?;
-        self.count.zero_by(queue)?;
+        if self.plan.n_cells > self.clean {
+            self.count.zero_by(queue)?;
+            self.clean = self.plan.n_cells;
+        }
+        let tiles = self.scan.state(self.plan.n_cells)?;
+        let (tiles, n_tiles) = (tiles.ptr(), tiles.len() as u32);
         self.start.resize_with_room(self.plan.n_cells + 1)?;
         let arguments = SortArgs {
             grid: self.layout(),
             count: self.count.ptr(),
+            tiles,
             position,
             cell: self.cell.ptr(),
             rank: self.rank.ptr(),
             n: n as u32,
             variable: u32::from(variable),
+            n_tiles,
+            unused: 0,
         };
         // SAFETY: arrays of n particles, of all cells, and one more for their starts; kernels keep within the cells
         // whatever the positions.
         unsafe {
-            launch(queue, kernels::CELL_COUNT, n as u64, &arguments)?;
-            self.scan.run(queue, &self.count, &mut self.start)?;
+            launch(queue, kernels::CELL_COUNT, n.max(1) as u64, &arguments)?;
+            self.scan.run_from_zero(queue, &self.count, &mut self.start)?;
             launch(queue, kernels::CELL_SCATTER, n as u64, &arguments)
         }
     }

@@ -342,8 +342,10 @@ static_assert(sizeof(Grid) == 544, "Grid differs between host and device");
 struct SortArgs {
     // Cells to sort into.
     Grid grid;
-    // Particles in each cell, counted from zero.
+    // Particles in each cell: counted from zero, and zero again once all have their slots.
     u32 *count;
+    // State of the scan between the two, zeroed by the count, `[n_tiles]`.
+    u64 *tiles;
     // Positions, with radii in w where `variable`.
     float4 *position;
     // Cell of each particle, written by the count.
@@ -354,8 +356,12 @@ struct SortArgs {
     u32 n;
     // 1 where radii are per particle.
     u32 variable;
+    // Length of that state.
+    u32 n_tiles;
+    // Zero.
+    u32 unused;
 };
-static_assert(sizeof(SortArgs) == 584, "SortArgs differs between host and device");
+static_assert(sizeof(SortArgs) == 600, "SortArgs differs between host and device");
 
 // Arguments of `scan_u32` and `scan_u64`: exclusive prefix sums in one pass with look-back.
 struct ScanArgs {
