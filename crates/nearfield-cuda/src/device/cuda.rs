@@ -196,7 +196,7 @@ impl Gpu for CudaDevice {
         let mut graphs = self.graphs.lock().unwrap_or_else(PoisonError::into_inner);
         let kernel = |module, name| self.kernel(module, name).ok().map(|kernel| kernel.cu_function());
         // SAFETY: the caller's promise. Where the driver refuses a graph, the parts are launched one by one.
-        let make = |parts: &[Part]| Ok(unsafe { Graph::new(parts, self.context.cu_ctx(), kernel) }.ok());
+        let make = |parts: &[Part]| Ok(unsafe { Graph::new(parts, &self.context, kernel) }.ok());
         match graphs.of(sequence, make, || self.synchronize())? {
             // SAFETY: the caller's promise.
             Some(graph) => unsafe { graph.launch(stream) }.map_err(failed("launching a graph")),
