@@ -6,7 +6,7 @@ mod emulated;
 use nearfield_conformance::cases;
 use nearfield_core::{
     Boundary, Dynamics, Engine, Ensemble, Interaction, Method, Particles, PerParticle, Plan, Quantities, Radii, System,
-    oracle,
+    Truncation, oracle,
     potentials::{Potential, Wca},
 };
 use nearfield_cuda::{CudaEngine, Variant};
@@ -157,12 +157,12 @@ fn follows_all_pairs(system: &System, plan: &Plan, tolerance: f32) -> CudaEngine
 
 /// Two atoms at each point of a lattice, all on their way through the box: nobody ever has more than one neighbour, so
 /// sums are the same to the bit in any order.
-fn pairs_of_atoms(spacing: f32) -> System {
+fn pairs_of_atoms(spacing: f32, truncation: Truncation) -> System {
     let sim_box = cases::cube(4.0 * spacing, [Boundary::Periodic; 3]);
     let of = |k: usize| [k % 4, k / 4 % 4, k / 16].map(|k| (k as f32 + 0.5) * spacing);
     let atoms = (0..64).flat_map(|k| [of(k), [of(k)[0] + 1.1, of(k)[1], of(k)[2]]]).collect();
     let mut system = cases::soft(sim_box, atoms, Radii::Uniform(1.5));
-    system.interaction = Interaction::lennard_jones();
+    system.interaction = Interaction { truncation, ..Interaction::lennard_jones() };
     cases::thermalize(&mut system, 0.05, &mut cases::rng(5));
     for i in 0..system.particles.len() {
         let [x, y, z] = system.particles.velocity.get(i);
@@ -171,33 +171,46 @@ fn pairs_of_atoms(spacing: f32) -> System {
     system
 }
 
-/// Stretches of lists and steps, steps by short ones, and steps one by one, between which lists are not made at the same
-/// steps; with random numbers that belong to a step.
+/// Stretches of lists and steps or of cells and steps, short ones, and steps one by one, between which lists are not made
+/// at the same steps; with random numbers that belong to a step.
 fn steps_do_not_depend_on_how_they_are_enqueued() {
     let ensemble = Ensemble::Langevin { temperature: 0.05, friction: 0.1 };
-    let (nve, langevin) = (Dynamics::nve(0.004), Dynamics { ensemble, seed: 9, ..Dynamics::nve(0.004) });
-    for (spacing, variant) in [(3.5, Variant::List), (8.0, Variant::SparseList)] {
-        let system = pairs_of_atoms(spacing);
-        for dynamics in [&nve, &langevin] {
+    let langevin = Dynamics { ensemble, seed: 9, ..Dynamics::nve(0.004) };
+    // Plain Lennard-Jones is not computed alike with and without random numbers.
+    let motions = [(Dynamics::nve(0.004), Truncation::Cut), (langevin, Truncation::Force)];
+    let clusters = |skin| Plan { skin, ..Plan::new(Method::Cluster) };
+    let cases = [
+        (3.5, clusters(0.4), Some(Variant::List)),
+        (8.0, clusters(0.4), Some(Variant::SparseList)),
+        (8.0, clusters(0.0), Some(Variant::Pairs)),
+        (8.0, Plan::new(Method::Cell), None),
+    ];
+    for (spacing, plan, variant) in cases {
+        for (dynamics, truncation) in &motions {
+            let system = pairs_of_atoms(spacing, *truncation);
             let run = |record: bool, calls: &[u64]| {
-                let mut engine = loaded(&system, &Plan { skin: 0.4, ..Plan::new(Method::Cluster) });
+                let mut engine = loaded(&system, &plan);
                 engine.record_history(record);
                 let mut step = 0;
                 for &steps in calls {
                     engine.advance(dynamics, step, steps, Quantities::FORCES).expect("a run");
                     step += steps;
                 }
-                assert_eq!(engine.cluster_variant(), Some(variant));
+                assert_eq!(engine.cluster_variant(), variant);
                 let report = engine.report();
                 assert_eq!(report.evaluations, step + 1);
-                assert!((12..60).contains(&report.list_builds), "{report:?}");
+                if variant.is_some_and(Variant::uses_list) {
+                    assert!((12..60).contains(&report.list_builds), "{report:?}");
+                } else {
+                    assert_eq!(report.builds, step + 1);
+                }
                 let mut end = Particles::default();
                 engine.snapshot(&mut end).expect("a copy");
                 end
             };
-            let one_by_one = run(true, &[90]);
-            for calls in [&[90][..], &[1, 2, 3, 17, 5, 62], &[1; 90]] {
-                assert!(run(false, calls) == one_by_one, "{variant}, {calls:?}");
+            let one_by_one = run(true, &[130]);
+            for calls in [&[130][..], &[1, 2, 3, 17, 5, 102], &[1; 130]] {
+                assert!(run(false, calls) == one_by_one, "{variant:?}, {calls:?}");
             }
         }
     }

@@ -4,9 +4,9 @@ use crate::{
     ByForce, ByMotion, Kernel, Primitive, RayProgram,
     layouts::{
         AdvanceRays, BodiesArgs, BoundsArgs, BoxesArgs, CellStepArgs, ClusterControlArgs, ClusterListArgs,
-        ClusterStepArgs, ClustersMovedArgs, FinishExactArgs, ForceRays, GatherArgs, IntegrateArgs, ListArgs, ListRays,
-        ListedArgs, MortonArgs, MotionArgs, NumberArgs, PermuteArgs, QueryArgs, RescaleArgs, RowsArgs, SampleArgs,
-        ScanArgs, SortArgs, TotalsArgs,
+        ClusterStepArgs, ClustersMovedArgs, FinishExactArgs, FirstStepArgs, ForceRays, GatherArgs, IntegrateArgs,
+        ListArgs, ListRays, ListedArgs, MortonArgs, MotionArgs, NumberArgs, PermuteArgs, QueryArgs, RescaleArgs,
+        RowsArgs, SampleArgs, ScanArgs, SortArgs, TotalsArgs,
     },
 };
 
@@ -66,6 +66,9 @@ pub const CELL_FORCES: ByForce<Kernel<GatherArgs>> = ByForce {
 /// particle. In f32 and without energies.
 pub const CELL_STEP: ByMotion<ByForce<Kernel<CellStepArgs>>> =
     steps(Kernel::new("cell_step", "cell_step_uniform", 128), Kernel::new("cell_step", "cell_step_any", 128));
+
+/// Says which step [`CELL_STEP`] begins with.
+pub const BEGIN_CELL_STEPS: Kernel<FirstStepArgs> = Kernel::new("cell_step", "begin_cell_steps", 32);
 
 /// Forces from candidates in cells, each pair found once and added to zeros, but for sums that do not depend on order.
 pub const CLUSTER_FORCES: ByForce<Kernel<GatherArgs>> = ByForce {

@@ -131,8 +131,8 @@ impl Clusters {
     }
 
     /// The cells, where there is no list.
-    pub(crate) fn cells(&self) -> Option<&Grid> {
-        (!self.variant.uses_list()).then_some(&self.grid)
+    pub(crate) fn cells(&mut self) -> Option<&mut Grid> {
+        (!self.variant.uses_list()).then_some(&mut self.grid)
     }
 
     fn pairs(&self) -> Pairs {

@@ -4,7 +4,7 @@ use super::{
     integrate::Constants, list::Lister, motion::Reference, order, physics::Physics, query::Answers, results::Results,
     state::State, structure::Structure, survey::Surveyor, timeline::Timeline, totals::Totalizer,
 };
-use crate::{Buffer, Gpu};
+use crate::{Buffer, Gpu, grid::CellStepper};
 use nearfield_core::{Plan, Report, Result, System, engine::MemoryOrder, maintenance::Policy};
 use nearfield_kernels::Float4;
 use std::sync::Arc;
@@ -19,6 +19,7 @@ pub(crate) struct Loaded {
     /// Where positions go that move while others are still looked at.
     pub next_position: Buffer<Float4>,
     pub constants: Constants,
+    pub cell_stepper: CellStepper,
     pub totalizer: Totalizer,
     pub structure: Structure,
     pub policy: Box<dyn Policy>,
@@ -54,6 +55,7 @@ impl Loaded {
             results: Results::new(gpu),
             next_position: Buffer::new(gpu, "next positions"),
             constants: Constants::new(gpu),
+            cell_stepper: CellStepper::new(gpu),
             totalizer: Totalizer::new(gpu, &system.interaction)?,
             structure: Structure::new(gpu, plan, &physics)?,
             policy: plan.maintenance.policy(),

@@ -157,9 +157,9 @@ impl Structure {
     }
 
     /// Cells of the present positions where most particles have no neighbours.
-    pub fn sparse_cells(&self) -> Option<&Grid> {
+    pub fn sparse_cells(&mut self) -> Option<&mut Grid> {
         let cells = match self {
-            Self::Cells(grid) => Some(&**grid),
+            Self::Cells(grid) => Some(&mut **grid),
             Self::Clusters(clusters) => clusters.cells(),
             _ => None,
         };

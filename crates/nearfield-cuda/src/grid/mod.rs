@@ -5,12 +5,14 @@ mod bulk;
 mod classes;
 mod plan;
 mod query;
+mod steps;
 mod width;
 
 pub use bipartite::{PointQuery, count as count_queries, list as list_queries};
+pub(crate) use plan::SPARSE;
 pub use plan::{CellPlan, Survey};
 pub use query::{Candidates, ForceQuery, ListQuery, Pairs, count, forces, list};
-pub(crate) use query::{CellStep, step};
+pub(crate) use steps::{CellStepper, CellSteps};
 
 use crate::{
     Buffer, Gpu,
@@ -138,7 +140,7 @@ impl Grid {
         self.plan.classes.len() > 1
     }
 
-    /// Whether most particles have no neighbours, so that [`step`] suits them.
+    /// Whether most particles have no neighbours, so that [`CellStepper`] suits them.
     pub(crate) fn is_sparse(&self) -> bool {
         self.plan.sparse
     }

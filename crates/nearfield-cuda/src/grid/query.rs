@@ -9,9 +9,7 @@ use nearfield_core::{ListKind, Result};
 use nearfield_kernels::{
     Float4, Ptr,
     kernels::{self, CELL_FORCES, CLUSTER, CLUSTER_FORCES, ListKernels},
-    layouts::{
-        self, Box3, CellStepArgs, GatherArgs, Integrator, Law, ListArgs, NumberArgs, Particles, Results, Status,
-    },
+    layouts::{self, Box3, GatherArgs, Law, ListArgs, NumberArgs, Results},
 };
 
 /// Where candidates come from.
@@ -115,43 +113,6 @@ pub unsafe fn forces(queue: &dyn Queue, candidates: Candidates, query: &ForceQue
     };
     // SAFETY: the caller's promise.
     unsafe { launch(queue, kernel, candidates.threads(), &arguments) }
-}
-
-/// Enqueues the forces on all particles and a step of theirs, where most have no neighbours.
-///
-/// # Safety
-/// The particles are those that the cells were built from, at the same positions and as many as all arrays of `step`.
-///
-/// # Errors
-/// As [`Queue::launch`].
-pub(crate) unsafe fn step(queue: &dyn Queue, grid: &Grid, law: &Law, step: &CellStep) -> Result<()> {
-    let CellStep { integrator, particles, status, number } = *step;
-    let gather = GatherArgs {
-        law: *law,
-        space: integrator.space,
-        grid: grid.layout(),
-        velocity: particles.velocity,
-        results: Results::default(),
-        n: grid.n as u32,
-        slack: grid.plan.slack,
-    };
-    let arguments = CellStepArgs { gather, integrator, particles, status, step: number };
-    let kernel = kernels::CELL_STEP.choose(&integrator).choose(law, false, false);
-    // SAFETY: the caller's promise.
-    unsafe { launch(queue, kernel, grid.n as u64, &arguments) }
-}
-
-/// A step of particles in cells.
-#[derive(Clone, Copy)]
-pub(crate) struct CellStep {
-    /// How particles move.
-    pub integrator: Integrator,
-    /// The particles.
-    pub particles: Particles,
-    /// What went wrong.
-    pub status: Ptr<Status>,
-    /// The step that the forces belong to: its second half kick is done, then the first one and the drift of the next.
-    pub number: u64,
 }
 
 /// What is listed.

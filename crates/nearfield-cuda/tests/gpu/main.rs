@@ -78,6 +78,8 @@ fn main() {
         plans::each_structure(),
         neighbors::pairs_are_those_of_the_cpu,
     );
+    let queries = "neighbors::queries_are_answered_as_by_the_cpu";
+    trials.add(queries, Needs::Cuda, neighbors::queries_are_answered_as_by_the_cpu);
     let rays = plans::each_structure().into_iter().filter(|plan| plan.method.uses_bvh());
     trials.add_for(
         "neighbors::a_million_particles_have_the_pairs_that_cells_find",

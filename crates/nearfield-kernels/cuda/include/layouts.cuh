@@ -401,10 +401,23 @@ struct CellStepArgs {
     Particles particles;
     // What went wrong.
     Status *status;
-    // The step that the forces belong to.
+    // The step that the present launches begin with.
+    u64 *first;
+    // The step that the forces belong to, from that on.
+    u32 index;
+    // Zero.
+    u32 unused;
+};
+static_assert(sizeof(CellStepArgs) == 888, "CellStepArgs differs between host and device");
+
+// Arguments of `begin_cell_steps`.
+struct FirstStepArgs {
+    // Where [`CellStepArgs`] find it.
+    u64 *first;
+    // The step.
     u64 step;
 };
-static_assert(sizeof(CellStepArgs) == 880, "CellStepArgs differs between host and device");
+static_assert(sizeof(FirstStepArgs) == 16, "FirstStepArgs differs between host and device");
 
 // Arguments of `number_slots`.
 struct NumberArgs {

@@ -104,7 +104,19 @@ layouts! {
         pub particles: Particles,
         /// What went wrong.
         pub status: Ptr<Status>,
-        /// The step that the forces belong to.
+        /// The step that the present launches begin with.
+        pub first: Ptr<u64>,
+        /// The step that the forces belong to, from that on.
+        pub index: u32,
+        /// Zero.
+        pub unused: u32,
+    }
+
+    /// Arguments of `begin_cell_steps`.
+    pub struct FirstStepArgs {
+        /// Where [`CellStepArgs`] find it.
+        pub first: Ptr<u64>,
+        /// The step.
         pub step: u64,
     }
 
