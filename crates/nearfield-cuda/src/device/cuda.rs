@@ -26,10 +26,10 @@ use std::{
 
 /// A GPU of this machine.
 pub struct CudaDevice {
-    // Gone before what they are made of.
-    graphs: Mutex<Graphs>,
     context: Arc<CudaContext>,
     stream: Arc<CudaStream>,
+    // Before the kernels that they launch, for these must not go first.
+    graphs: Mutex<Graphs>,
     loaded: Mutex<Loaded>,
     /// OptiX, or why there is none, once somebody has asked.
     tracing: OnceLock<std::result::Result<Optix, String>>,
@@ -58,7 +58,7 @@ impl CudaDevice {
     }
 
     fn with_stream(context: Arc<CudaContext>, stream: Arc<CudaStream>) -> Self {
-        Self { graphs: Mutex::default(), context, stream, loaded: Mutex::default(), tracing: OnceLock::new() }
+        Self { context, stream, graphs: Mutex::default(), loaded: Mutex::default(), tracing: OnceLock::new() }
     }
 
     /// Makes the context the calling thread's: engines may move between threads.
@@ -197,7 +197,7 @@ impl Gpu for CudaDevice {
         let mut graphs = self.graphs.lock().unwrap_or_else(PoisonError::into_inner);
         let kernel = |module, name| self.kernel(module, name).ok().map(|kernel| kernel.cu_function());
         // SAFETY: the caller's promise. Where the driver refuses a graph, the parts are launched one by one.
-        let make = |parts: &[Part]| unsafe { Graph::new(parts, self.context.cu_ctx(), kernel) }.ok();
+        let make = |parts: &[Part]| unsafe { Graph::new(parts, &self.context, kernel) }.ok();
         match graphs.of(sequence, make) {
             // SAFETY: the caller's promise.
             Some(graph) => unsafe { graph.launch(stream) }.map_err(failed("launching a graph")),

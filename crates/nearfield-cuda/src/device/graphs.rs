@@ -3,8 +3,8 @@
 //! Launching a kernel costs the host 4 us, a graph of twenty not much more.
 
 use crate::sequence::{Part, Sequence};
-use cudarc::driver::{DriverError, result::graph, sys};
-use std::{ffi::c_void, mem::MaybeUninit, ptr};
+use cudarc::driver::{CudaContext, DriverError, result::graph, sys};
+use std::{ffi::c_void, mem::MaybeUninit, ptr, sync::Arc};
 
 /// Most sequences that are remembered.
 const REMEMBERED: usize = 32;
@@ -21,7 +21,11 @@ struct Remembered {
 }
 
 /// A graph that can be launched.
-pub(super) struct Graph(sys::CUgraphExec);
+pub(super) struct Graph {
+    exec: sys::CUgraphExec,
+    /// Where it lives, which must not go before.
+    context: Arc<CudaContext>,
+}
 
 // SAFETY: a handle of the driver that belongs to no thread; calls with it take turns behind the device's lock.
 unsafe impl Send for Graph {}
@@ -59,7 +63,7 @@ impl Graph {
     /// As for [`Graph::launch`], at each launch.
     pub unsafe fn new(
         parts: &[Part],
-        context: sys::CUcontext,
+        context: &Arc<CudaContext>,
         mut kernel: impl FnMut(&'static str, &'static str) -> Option<sys::CUfunction>,
     ) -> Result<Self, DriverError> {
         let mut made = MaybeUninit::uninit();
@@ -71,7 +75,7 @@ impl Graph {
         let mut last = None;
         let mut add = |part: &Part| {
             // SAFETY: the graph is valid, and so is the node before.
-            last = Some(unsafe { add(made, last, part, context, &mut kernel)? });
+            last = Some(unsafe { add(made, last, part, context.cu_ctx(), &mut kernel)? });
             Ok(())
         };
         // SAFETY: the graph is valid until it is destroyed; what is instantiated does not need it.
@@ -79,7 +83,7 @@ impl Graph {
             let outcome = parts.iter().try_for_each(&mut add);
             let outcome = outcome.and_then(|()| graph::instantiate(made, sys::CUgraphInstantiate_flags(0)));
             graph::destroy(made)?;
-            outcome.map(Self)
+            outcome.map(|exec| Self { exec, context: context.clone() })
         }
     }
 
@@ -89,15 +93,17 @@ impl Graph {
     /// As for each part; the stream is of the graph's context.
     pub unsafe fn launch(&self, stream: sys::CUstream) -> Result<(), DriverError> {
         // SAFETY: the caller's promise.
-        unsafe { graph::launch(self.0, stream) }
+        unsafe { graph::launch(self.exec, stream) }
     }
 }
 
 impl Drop for Graph {
     fn drop(&mut self) {
-        // SAFETY: the graph is valid and used by nobody else; the driver frees it once it does not run any more. A device
-        // that fails here has failed before.
-        let _ = unsafe { graph::exec_destroy(self.0) };
+        // A device that fails here has failed before.
+        if self.context.bind_to_thread().is_ok() {
+            // SAFETY: the graph is valid and used by nobody else; the driver frees it once it does not run any more.
+            let _ = unsafe { graph::exec_destroy(self.exec) };
+        }
     }
 }
 
