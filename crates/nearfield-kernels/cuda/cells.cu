@@ -17,8 +17,7 @@ KERNEL(cell_count, SortArgs, 256) {
 KERNEL(cell_scatter, SortArgs, 256) {
     const u32 i = thread_index();
     if (i >= a.n) return;
-    const u32 cell = a.cell[i], slot = a.grid.cell_start[cell] + a.rank[i];
-    a.count[cell] = 0;
+    const u32 slot = take_slot(a, i);
     a.grid.slot[slot] = a.position[i];
     a.grid.particle[slot] = i;
 }

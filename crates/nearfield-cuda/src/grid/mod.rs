@@ -70,7 +70,8 @@ impl Grid {
         self.plan.is_much_as(&before)
     }
 
-    /// Enqueues the sorting of `n` particles by the cells of [`Grid::plan`], which must have been called. `variable`: radii are in w.
+    /// Enqueues the sorting of `n` particles by the cells of [`Grid::plan`], which must have been called. `variable`: radii
+    /// are in w.
     ///
     /// # Safety
     /// `position` is the address of `n` positions.
@@ -78,6 +79,27 @@ impl Grid {
     /// # Errors
     /// As [`Gpu::allocate`] and [`Queue::launch`].
     pub unsafe fn build(&mut self, queue: &dyn Queue, position: Ptr<Float4>, n: usize, variable: bool) -> Result<()> {
+        // SAFETY: the caller's promise.
+        let sort = unsafe { self.count(queue, position, n, variable)? };
+        // SAFETY: as of the count.
+        unsafe { launch(queue, kernels::CELL_SCATTER, n as u64, &sort) }
+    }
+
+    /// The same but for the particles' slots, which who takes the arguments is to give them: by [`kernels::CELL_SCATTER`] or
+    /// a kernel of its own.
+    ///
+    /// # Safety
+    /// As [`Grid::build`].
+    ///
+    /// # Errors
+    /// As [`Grid::build`].
+    pub(crate) unsafe fn count(
+        &mut self,
+        queue: &dyn Queue,
+        position: Ptr<Float4>,
+        n: usize,
+        variable: bool,
+    ) -> Result<SortArgs> {
         self.n = n;
         for buffer in [&mut self.cell, &mut self.rank, &mut self.particle] {
             buffer.resize(n)?;
@@ -105,11 +127,9 @@ impl Grid {
         };
         // SAFETY: arrays of n particles, of all cells, and one more for their starts; kernels keep within the cells
         // whatever the positions.
-        unsafe {
-            launch(queue, kernels::CELL_COUNT, n.max(1) as u64, &arguments)?;
-            self.scan.run_from_zero(queue, &self.count, &mut self.start)?;
-            launch(queue, kernels::CELL_SCATTER, n as u64, &arguments)
-        }
+        unsafe { launch(queue, kernels::CELL_COUNT, n.max(1) as u64, &arguments)? };
+        self.scan.run_from_zero(queue, &self.count, &mut self.start)?;
+        Ok(arguments)
     }
 
     /// Addresses for kernels.

@@ -531,6 +531,21 @@ struct ClusterControlArgs {
 };
 static_assert(sizeof(ClusterControlArgs) == 24, "ClusterControlArgs differs between host and device");
 
+// Arguments of `sort_particles`.
+struct SortParticlesArgs {
+    // The sort, counted and scanned.
+    SortArgs sort;
+    // The particles.
+    Particles from;
+    // The particles in the order of the cells.
+    Particles to;
+    // Place of each input index.
+    u32 *place;
+    // The list there has been; there is none then.
+    ClusterControl *control;
+};
+static_assert(sizeof(SortParticlesArgs) == 696, "SortParticlesArgs differs between host and device");
+
 // Arguments of `list_clusters`.
 struct ClusterListArgs {
     // The interaction, its cutoff longer by the skin.
