@@ -261,8 +261,8 @@ impl ClusterList {
         unsafe { launch(&*self.gpu, kernels::BEGIN_STEPS, 1, &arguments) }
     }
 
-    /// Enqueues so many steps from forces at the present positions on, one more where that is odd, of which those are done
-    /// that the list serves for and that are not beyond the end.
+    /// Enqueues so many steps, or one more, from forces at the present positions on, of which those are done that the list
+    /// serves for and that are not beyond the end.
     pub fn enqueue_steps(&self, queue: &dyn Queue, query: &StepQuery, grid: &Grid, steps: u64) -> Result<()> {
         let StepQuery { physics, state, spare, integrator, status } = query;
         let n = state.len() as u64;
@@ -283,7 +283,8 @@ impl ClusterList {
             unused: 0,
         };
         // Positions that go to and fro are back after two steps.
-        for index in 0..steps.next_multiple_of(2) as u32 {
+        let steps = steps.next_multiple_of(if self.once { 1 } else { 2 });
+        for index in 0..steps as u32 {
             arguments.listed.index = index;
             if self.once {
                 add_pairs(queue, LISTED_PAIRS.choose(&physics.law, false, false), &arguments.listed)?;
