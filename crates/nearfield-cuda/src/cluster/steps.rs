@@ -9,6 +9,9 @@ use crate::Sequence;
 use nearfield_core::{Report, Result};
 use std::ops::Range;
 
+/// Lists to a sequence: particles are then in the memory that they were in before, and so the next one is the same.
+const LISTS: usize = 2;
+
 impl Clusters {
     /// Makes steps from forces at the first of `steps` on, whose positions the list serves, and none beyond the last; waits
     /// for the device to know how many there were. Lists are made anew on the way until about step `replan`. Where there
@@ -25,10 +28,12 @@ impl Clusters {
         }
         let stretch = self.pace.stretch(steps.end.min(replan).saturating_sub(steps.start));
         self.list.begin_steps(&mut query, steps.start, steps.end)?;
-        for _ in 0..stretch.lists {
+        for first in (0..stretch.lists).step_by(LISTS) {
             let sequence = Sequence::default();
-            self.list.enqueue_steps(&sequence, &query, &self.grid, stretch.steps)?;
-            self.enqueue_list(&sequence, query.physics, query.state)?;
+            for _ in first..stretch.lists.min(first + LISTS as u64) {
+                self.list.enqueue_steps(&sequence, &query, &self.grid, stretch.steps)?;
+                self.enqueue_list(&sequence, query.physics, query.state)?;
+            }
             // SAFETY: all arrays have their size and keep it until the steps have been waited for.
             unsafe { self.gpu.run(&sequence)? };
         }
