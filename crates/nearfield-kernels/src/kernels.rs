@@ -4,9 +4,9 @@ use crate::{
     ByForce, ByMotion, Kernel, Primitive, RayProgram,
     layouts::{
         AdvanceRays, BodiesArgs, BoundsArgs, BoxesArgs, CellStepArgs, ClusterControlArgs, ClusterListArgs,
-        ClusterStepArgs, ClustersMovedArgs, FinishExactArgs, FirstStepArgs, ForceRays, GatherArgs, IntegrateArgs,
-        ListArgs, ListRays, ListedArgs, MortonArgs, MotionArgs, NumberArgs, PermuteArgs, QueryArgs, RescaleArgs,
-        RowsArgs, SampleArgs, ScanArgs, SortArgs, SortParticlesArgs, TotalsArgs,
+        ClusterStepArgs, ClustersMovedArgs, CopyRowsArgs, FinishExactArgs, FirstStepArgs, ForceRays, GatherArgs,
+        IntegrateArgs, ListArgs, ListRays, ListedArgs, MortonArgs, MotionArgs, NumberArgs, PermuteArgs, QueryArgs,
+        RescaleArgs, RowsArgs, SampleArgs, ScanArgs, SortArgs, SortParticlesArgs, StageArgs, TotalsArgs,
     },
 };
 
@@ -149,6 +149,15 @@ pub const CELL_LIST: ListKernels = ListKernels {
     count: Kernel::new("lists", "cell_list_count", 128),
     fill: Kernel::new("lists", "cell_list_fill", 128),
 };
+/// The same lists of short rows, each found once: rows wherever there is room, then at their places.
+pub const CELL_LIST_STAGE: Kernel<StageArgs> = Kernel::new("staged_lists", "cell_list_stage", 128);
+/// Most entries of a row that is staged.
+pub const STAGED_ROW: usize = 80;
+/// Rows to their places; [`ROW_LANES`] threads for each.
+pub const COPY_ROWS: Kernel<CopyRowsArgs> = Kernel::new("staged_lists", "copy_rows", 256);
+/// Threads to a row.
+pub const ROW_LANES: usize = 8;
+
 /// Lists from candidates in cells where radii are per particle.
 pub const CELL_LIST_RADII: ListKernels = ListKernels {
     count: Kernel::new("lists", "cell_list_count_radii", 128),

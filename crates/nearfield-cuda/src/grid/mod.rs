@@ -5,6 +5,7 @@ mod bulk;
 mod classes;
 mod plan;
 mod query;
+mod staged;
 mod steps;
 mod width;
 

@@ -469,6 +469,49 @@ struct ListArgs {
 };
 static_assert(sizeof(ListArgs) == 736, "ListArgs differs between host and device");
 
+// What is known of rows that were listed before their places were.
+struct StagingControl {
+    // Entries of all rows.
+    u64 entries;
+    // 1 where a row or all of them had too little room.
+    u32 overflow;
+    // Zero.
+    u32 unused;
+};
+static_assert(sizeof(StagingControl) == 16, "StagingControl differs between host and device");
+
+// Arguments of `cell_list_stage`: rows wherever there is room.
+struct StageArgs {
+    // What is listed; rows are counted too.
+    ListArgs list;
+    // Neighbours, by input index, those of a row together.
+    u32 *staged;
+    // Where each row begins there, by input index.
+    u64 *start;
+    // Zeroed before.
+    StagingControl *control;
+    // Entries that there is room for.
+    u64 capacity;
+};
+static_assert(sizeof(StageArgs) == 768, "StageArgs differs between host and device");
+
+// Arguments of `copy_rows`: rows to their places.
+struct CopyRowsArgs {
+    // Row starts, `[n + 1]`.
+    u64 *offset;
+    // See [`StageArgs`].
+    u64 *start;
+    // See [`StageArgs`].
+    u32 *staged;
+    // Neighbours, by input index.
+    u32 *index;
+    // Number of rows.
+    u32 n;
+    // Zero.
+    u32 unused;
+};
+static_assert(sizeof(CopyRowsArgs) == 40, "CopyRowsArgs differs between host and device");
+
 // Arguments of `query_*`: lists of queries among points of another set.
 struct QueryArgs {
     // The points, in cells of one class, with rows by query; [`ListArgs::n`] is the number of queries. Radii are per

@@ -168,6 +168,46 @@ layouts! {
         pub unused: u32,
     }
 
+    /// What is known of rows that were listed before their places were.
+    pub struct StagingControl {
+        /// Entries of all rows.
+        pub entries: u64,
+        /// 1 where a row or all of them had too little room.
+        pub overflow: u32,
+        /// Zero.
+        pub unused: u32,
+    }
+
+    /// Arguments of `cell_list_stage`: rows wherever there is room.
+    pub struct StageArgs {
+        /// What is listed; rows are counted too.
+        pub list: ListArgs,
+        /// Neighbours, by input index, those of a row together.
+        pub staged: Ptr<u32>,
+        /// Where each row begins there, by input index.
+        pub start: Ptr<u64>,
+        /// Zeroed before.
+        pub control: Ptr<StagingControl>,
+        /// Entries that there is room for.
+        pub capacity: u64,
+    }
+
+    /// Arguments of `copy_rows`: rows to their places.
+    pub struct CopyRowsArgs {
+        /// Row starts, `[n + 1]`.
+        pub offset: Ptr<u64>,
+        /// See [`StageArgs`].
+        pub start: Ptr<u64>,
+        /// See [`StageArgs`].
+        pub staged: Ptr<u32>,
+        /// Neighbours, by input index.
+        pub index: Ptr<u32>,
+        /// Number of rows.
+        pub n: u32,
+        /// Zero.
+        pub unused: u32,
+    }
+
     /// Arguments of `query_*`: lists of queries among points of another set.
     pub struct QueryArgs {
         /// The points, in cells of one class, with rows by query; [`ListArgs::n`] is the number of queries. Radii are per
