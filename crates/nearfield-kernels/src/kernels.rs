@@ -6,7 +6,7 @@ use crate::{
         AdvanceRays, BodiesArgs, BoundsArgs, BoxesArgs, CellStepArgs, ClusterControlArgs, ClusterListArgs,
         ClusterStepArgs, ClustersMovedArgs, CopyRowsArgs, FinishExactArgs, FirstStepArgs, ForceRays, GatherArgs,
         IntegrateArgs, ListArgs, ListRays, ListedArgs, MortonArgs, MotionArgs, NumberArgs, PermuteArgs, QueryArgs,
-        RescaleArgs, RowsArgs, SampleArgs, ScanArgs, SortArgs, StageArgs, TotalsArgs,
+        RescaleArgs, RowsArgs, SampleArgs, ScanArgs, SortArgs, SortParticlesArgs, StageArgs, TotalsArgs,
     },
 };
 
@@ -87,6 +87,8 @@ pub const SEGMENT: usize = 15;
 pub const BEGIN_STEPS: Kernel<ClusterControlArgs> = Kernel::new("cluster_list", "begin_steps", 32);
 /// Notes how the list has served, and that there is none now.
 pub const BEGIN_LIST: Kernel<ClusterControlArgs> = Kernel::new("cluster_list", "begin_list", 32);
+/// The same, and particles in the order of cells: in place of [`CELL_SCATTER`] and [`PERMUTE`]. A thread at least.
+pub const SORT_PARTICLES: Kernel<SortParticlesArgs> = Kernel::new("cluster_list", "sort_particles", 256);
 /// Whether lists serve the present positions.
 pub const CLUSTERS_MOVED: Kernel<ClustersMovedArgs> = Kernel::new("cluster_list", "clusters_moved", 256);
 

@@ -342,8 +342,10 @@ static_assert(sizeof(Grid) == 544, "Grid differs between host and device");
 struct SortArgs {
     // Cells to sort into.
     Grid grid;
-    // Particles in each cell, counted from zero.
+    // Particles in each cell: counted from zero, and zero again once all have their slots.
     u32 *count;
+    // State of the scan between the two, zeroed by the count, `[n_tiles]`.
+    u64 *tiles;
     // Positions, with radii in w where `variable`.
     float4 *position;
     // Cell of each particle, written by the count.
@@ -354,8 +356,12 @@ struct SortArgs {
     u32 n;
     // 1 where radii are per particle.
     u32 variable;
+    // Length of that state.
+    u32 n_tiles;
+    // Zero.
+    u32 unused;
 };
-static_assert(sizeof(SortArgs) == 584, "SortArgs differs between host and device");
+static_assert(sizeof(SortArgs) == 600, "SortArgs differs between host and device");
 
 // Arguments of `scan_u32` and `scan_u64`: exclusive prefix sums in one pass with look-back.
 struct ScanArgs {
@@ -567,6 +573,21 @@ struct ClusterControlArgs {
     u64 end;
 };
 static_assert(sizeof(ClusterControlArgs) == 24, "ClusterControlArgs differs between host and device");
+
+// Arguments of `sort_particles`.
+struct SortParticlesArgs {
+    // The sort, counted and scanned.
+    SortArgs sort;
+    // The particles.
+    Particles from;
+    // The particles in the order of the cells.
+    Particles to;
+    // Place of each input index.
+    u32 *place;
+    // The list there has been; there is none then.
+    ClusterControl *control;
+};
+static_assert(sizeof(SortParticlesArgs) == 696, "SortParticlesArgs differs between host and device");
 
 // Arguments of `list_clusters`.
 struct ClusterListArgs {

@@ -48,8 +48,10 @@ layouts! {
     pub struct SortArgs {
         /// Cells to sort into.
         pub grid: Grid,
-        /// Particles in each cell, counted from zero.
+        /// Particles in each cell: counted from zero, and zero again once all have their slots.
         pub count: Ptr<u32>,
+        /// State of the scan between the two, zeroed by the count, `[n_tiles]`.
+        pub tiles: Ptr<u64>,
         /// Positions, with radii in w where `variable`.
         pub position: Ptr<Float4>,
         /// Cell of each particle, written by the count.
@@ -60,6 +62,10 @@ layouts! {
         pub n: u32,
         /// 1 where radii are per particle.
         pub variable: u32,
+        /// Length of that state.
+        pub n_tiles: u32,
+        /// Zero.
+        pub unused: u32,
     }
 
     /// Arguments of `scan_u32` and `scan_u64`: exclusive prefix sums in one pass with look-back.
