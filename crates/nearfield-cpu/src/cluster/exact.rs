@@ -4,7 +4,7 @@ use super::{
     BLOCK, Output,
     blocks::Blocks,
     list::{PairList, Pairs},
-    quad::{CLUSTER, Quad, VECTORS, own_pairs, squared_length, twice},
+    quad::{CLUSTER, Quad, VECTORS, displacement, own_pairs, squared_length, twice},
     sums::{Exact, PageSums},
 };
 use crate::{
@@ -67,7 +67,7 @@ impl lanes::Kernel for Kernel<'_> {
                 let own = segment.own && k == 0;
                 let pairs = if own { own_pairs(cluster) } else { [u16::MAX; VECTORS] };
                 for v in 0..VECTORS {
-                    let r2 = squared_length(lanes, quad.displacement::<true>(lanes, v, at, &shifts));
+                    let r2 = squared_length(lanes, displacement::<L, true>(lanes, &quad.position[v], at, &shifts[v]));
                     let mut inside = lanes.lt(r2, range2) & pairs[v];
                     while inside != 0 {
                         let lane = inside.trailing_zeros() as usize;

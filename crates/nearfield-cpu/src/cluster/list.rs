@@ -2,7 +2,7 @@
 
 use super::{
     blocks::{Blocks, Octet, PAGE},
-    quad::{self, Quad, VECTORS, squared_length, twice},
+    quad::{self, Quad, VECTORS, displacement, squared_length, twice},
 };
 use crate::{
     Grid, GroupBox, Run,
@@ -262,8 +262,8 @@ fn any_within<L: Lanes, const IMAGES: bool>(
 ) -> bool {
     let at = twice(lanes, &position[j]);
     let shifts = if IMAGES { quad.shifts(lanes, blocks, j) } else { [at; VECTORS] };
-    let first = squared_length(lanes, quad.displacement::<IMAGES>(lanes, 0, at, &shifts));
-    let second = squared_length(lanes, quad.displacement::<IMAGES>(lanes, 1, at, &shifts));
+    let first = squared_length(lanes, displacement::<L, IMAGES>(lanes, &quad.position[0], at, &shifts[0]));
+    let second = squared_length(lanes, displacement::<L, IMAGES>(lanes, &quad.position[1], at, &shifts[1]));
     lanes.lt(first, reach2[0]) | lanes.lt(second, reach2[1]) != 0
 }
 

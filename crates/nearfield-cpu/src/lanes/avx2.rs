@@ -88,6 +88,11 @@ impl Lanes for V3 {
     }
 
     #[inline(always)]
+    fn mul_sub(self, a: [__m256; 2], b: [__m256; 2], c: [__m256; 2]) -> [__m256; 2] {
+        [self.fma._mm256_fmsub_ps(a[0], b[0], c[0]), self.fma._mm256_fmsub_ps(a[1], b[1], c[1])]
+    }
+
+    #[inline(always)]
     fn max(self, a: [__m256; 2], b: [__m256; 2]) -> [__m256; 2] {
         both(a, b, |a, b| self.avx._mm256_max_ps(a, b))
     }
@@ -188,6 +193,11 @@ impl Lanes for V3 {
     #[inline(always)]
     fn halves(self, low: f32, high: f32) -> [__m256; 2] {
         [self.avx._mm256_set1_ps(low), self.avx._mm256_set1_ps(high)]
+    }
+
+    #[inline(always)]
+    fn quarters(self, four: &[f32; 4]) -> [[__m256; 2]; 2] {
+        [self.halves(four[0], four[1]), self.halves(four[2], four[3])]
     }
 
     #[inline(always)]

@@ -56,6 +56,11 @@ impl Lanes for V4 {
     }
 
     #[inline(always)]
+    fn mul_sub(self, a: __m512, b: __m512, c: __m512) -> __m512 {
+        self.avx512f._mm512_fmsub_ps(a, b, c)
+    }
+
+    #[inline(always)]
     fn max(self, a: __m512, b: __m512) -> __m512 {
         self.avx512f._mm512_max_ps(a, b)
     }
@@ -143,6 +148,14 @@ impl Lanes for V4 {
     fn halves(self, low: f32, high: f32) -> __m512 {
         let low = self.avx512f._mm512_set1_ps(low);
         self.avx512f._mm512_mask_mov_ps(low, 0xff00, self.avx512f._mm512_set1_ps(high))
+    }
+
+    #[inline(always)]
+    fn quarters(self, four: &[f32; 4]) -> [__m512; 2] {
+        let four = self.avx512f._mm512_castps128_ps512(cast(*four));
+        let first = cast([0u32, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1]);
+        let second = cast([2u32, 2, 2, 2, 2, 2, 2, 2, 3, 3, 3, 3, 3, 3, 3, 3]);
+        [self.avx512f._mm512_permutexvar_ps(first, four), self.avx512f._mm512_permutexvar_ps(second, four)]
     }
 
     #[inline(always)]

@@ -59,6 +59,11 @@ impl Lanes for Portable {
     }
 
     #[inline(always)]
+    fn mul_sub(self, a: [f32; 16], b: [f32; 16], c: [f32; 16]) -> [f32; 16] {
+        from_fn(|k| a[k].mul_add(b[k], -c[k]))
+    }
+
+    #[inline(always)]
     fn max(self, a: [f32; 16], b: [f32; 16]) -> [f32; 16] {
         from_fn(|k| a[k].max(b[k]))
     }
@@ -141,6 +146,11 @@ impl Lanes for Portable {
     #[inline(always)]
     fn halves(self, low: f32, high: f32) -> [f32; 16] {
         from_fn(|k| if k < 8 { low } else { high })
+    }
+
+    #[inline(always)]
+    fn quarters(self, four: &[f32; 4]) -> [[f32; 16]; 2] {
+        [self.halves(four[0], four[1]), self.halves(four[2], four[3])]
     }
 
     #[inline(always)]

@@ -18,7 +18,7 @@ impl Kernel for Everything<'_> {
         let masks = vec![l.lt(a, b), l.ne_u(u, v), l.gt_u(u, v), l.ne_u(u, l.splat_u(3))];
         let mut bits = Vec::new();
         let mut out = [0.0; 16];
-        for value in [l.add(a, b), l.sub(a, b), l.mul(a, b), l.mul_add(a, b, c)] {
+        for value in [l.add(a, b), l.sub(a, b), l.mul(a, b), l.mul_add(a, b, c), l.mul_sub(a, b, c)] {
             l.compress(u16::MAX, value, &mut out);
             bits.extend(out.iter().map(|x| if x.is_nan() { 1 } else { x.to_bits() }));
         }
