@@ -4,7 +4,7 @@ use super::{
     BLOCK,
     blocks::{Blocks, Octet},
     list::Pairs,
-    quad::{CLUSTER, Quad, VECTORS, displacement, own_pairs, squared_length, twice},
+    quad::{self, CLUSTER, Position, Quad, VECTORS, displacement, own_pairs, squared_length, twice},
 };
 use crate::{
     lanes::{self, Lanes},
@@ -202,27 +202,27 @@ impl<P: Law, const ENERGY: bool> lanes::Kernel for Kernel<'_, P, ENERGY> {
         // As many as a segment may have. No calls below: all that is in registers would have to be saved.
         crossed.resize(n, 0);
         let all = [lanes.mask(u16::MAX); VECTORS];
-        for segment in &list.segments {
-            let cluster = segment.cluster as usize;
+        for segments in list.segments.chunk_by(|a, b| a.cluster == b.cluster) {
+            let cluster = segments[0].cluster as usize;
             let (block, at) = (cluster / 2, cluster % 2 * CLUSTER);
             let kinds = if P::TYPED && !view.kind.is_empty() { view.kind[block] } else { [0; BLOCK] };
-            let quad = Quad::<L>::new(lanes, blocks, view.position, cluster, segment.image);
-            let position = quad.position;
-            let of = Four {
-                // Where to look at it the compiler may not: it is read from the cache, all registers are for sums.
-                position: std::hint::black_box(&position),
-                quad,
-                kinds: [kinds[at], kinds[at + 1], kinds[at + 2], kinds[at + 3]],
-            };
+            let kinds = [kinds[at], kinds[at + 1], kinds[at + 2], kinds[at + 3]];
+            // As if somebody else might change it, so that it is read from the cache: registers are for sums.
+            let position = quad::position(lanes, view.position, cluster);
+            let position = std::hint::black_box(&position);
             let zero = [[lanes.splat(0.0); 3]; VECTORS];
             let mut sums = Sums { force: zero, energy: zero };
-            let listed = &list.blocks[segment.start as usize..segment.end as usize];
-            let [first, second] = if segment.own { own_pairs(cluster) } else { [u16::MAX; VECTORS] };
-            let pairs = [lanes.mask(first), lanes.mask(second)];
-            let mut apart = Apart { blocks: &mut *crossed, n: 0 };
-            if view.crossed[block] {
-                sums = view.add_segment::<ENERGY, CROSSED>(lanes, &of, listed, pairs, sums, &mut to, &mut apart);
-            } else {
+            for segment in segments {
+                let quad = Quad::new(lanes, blocks, cluster, segment.image);
+                let of = Four { position, quad, kinds };
+                let listed = &list.blocks[segment.start as usize..segment.end as usize];
+                let [first, second] = if segment.own { own_pairs(cluster) } else { [u16::MAX; VECTORS] };
+                let pairs = [lanes.mask(first), lanes.mask(second)];
+                let mut apart = Apart { blocks: &mut *crossed, n: 0 };
+                if view.crossed[block] {
+                    sums = view.add_segment::<ENERGY, CROSSED>(lanes, &of, listed, pairs, sums, &mut to, &mut apart);
+                    continue;
+                }
                 // Its own block has not crossed either, so `pairs` is for none of those put apart.
                 if segment.image == [0; 3] {
                     sums = view.add_segment::<ENERGY, HERE>(lanes, &of, listed, pairs, sums, &mut to, &mut apart);
@@ -235,14 +235,16 @@ impl<P: Law, const ENERGY: bool> lanes::Kernel for Kernel<'_, P, ENERGY> {
                     sums = view.add_segment::<ENERGY, CROSSED>(lanes, &of, &blocks[..n], all, sums, &mut to, &mut none);
                 }
             }
-            for axis in 0..3 {
-                let of_four = lanes.sum_halves(sums.force[0][axis], sums.force[1][axis]);
-                for (to, sum) in to.force[block].0[axis][at..at + CLUSTER].iter_mut().zip(of_four) {
+            let force = lanes.sum_halves(sums.force[0], sums.force[1]);
+            for (to, of_four) in to.force[block].0.iter_mut().zip(&force) {
+                for (to, sum) in to[at..at + CLUSTER].iter_mut().zip(of_four) {
                     *to -= sum;
                 }
-                if ENERGY {
-                    let of_four = lanes.sum_halves(sums.energy[0][axis], sums.energy[1][axis]);
-                    for (to, sum) in to.energy[block].0[axis][at..at + CLUSTER].iter_mut().zip(of_four) {
+            }
+            if ENERGY {
+                let energy = lanes.sum_halves(sums.energy[0], sums.energy[1]);
+                for (to, of_four) in to.energy[block].0.iter_mut().zip(&energy) {
+                    for (to, sum) in to[at..at + CLUSTER].iter_mut().zip(of_four) {
                         *to += sum;
                     }
                 }
@@ -253,7 +255,7 @@ impl<P: Law, const ENERGY: bool> lanes::Kernel for Kernel<'_, P, ENERGY> {
 
 /// A cluster.
 struct Four<'a, L: Lanes> {
-    position: &'a [[L::F; 3]; VECTORS],
+    position: &'a Position<L>,
     quad: Quad<L>,
     kinds: [u32; CLUSTER],
 }

@@ -23,10 +23,12 @@ const LATER: [[u16; VECTORS]; 2] = {
     masks
 };
 
-/// A cluster in vectors.
+/// Where the particles of a cluster are.
+pub(super) type Position<L> = [[<L as Lanes>::F; 3]; VECTORS];
+
+/// A cluster to be paired with blocks seen in an image.
 #[derive(Clone, Copy)]
 pub(super) struct Quad<L: Lanes> {
-    pub position: [[L::F; 3]; VECTORS],
     block: usize,
     at: usize,
     image: [L::F; 3],
@@ -36,15 +38,13 @@ pub(super) struct Quad<L: Lanes> {
 }
 
 impl<L: Lanes> Quad<L> {
-    /// Cluster `cluster`, of blocks at `position`, to be paired with blocks seen in `image`.
+    /// Cluster `cluster`, to be paired with blocks seen in `image`.
     #[inline(always)]
-    pub fn new(lanes: L, blocks: &Blocks, position: &[Octet], cluster: usize, image: [i8; 3]) -> Self {
+    pub fn new(lanes: L, blocks: &Blocks, cluster: usize, image: [i8; 3]) -> Self {
         let (block, at) = (cluster / 2, cluster % 2 * CLUSTER);
-        let position = &position[block];
         let [x, y, z] = image.map(f32::from);
         let [px, py, pz] = blocks.period;
         Self {
-            position: quarters(lanes, position, at),
             block,
             at,
             image: [lanes.splat(x), lanes.splat(y), lanes.splat(z)],
@@ -78,11 +78,17 @@ impl<L: Lanes> Quad<L> {
     }
 }
 
+/// Where the particles of cluster `cluster` are, of blocks at `position`.
+#[inline(always)]
+pub(super) fn position<L: Lanes>(lanes: L, position: &[Octet], cluster: usize) -> Position<L> {
+    quarters(lanes, &position[cluster / 2], cluster % 2 * CLUSTER)
+}
+
 // No closures below or in kernels: they would be compiled without the instruction set.
 
 /// Elements `at` of each array in lanes 0 to 7 and the next in lanes 8 to 15, then the same of the two after them.
 #[inline(always)]
-fn quarters<L: Lanes>(lanes: L, octet: &Octet, at: usize) -> [[L::F; 3]; VECTORS] {
+fn quarters<L: Lanes>(lanes: L, octet: &Octet, at: usize) -> Position<L> {
     let [x, y, z] = [four(&octet.0[0], at), four(&octet.0[1], at), four(&octet.0[2], at)];
     let ([x0, x1], [y0, y1], [z0, z1]) = (lanes.quarters(x), lanes.quarters(y), lanes.quarters(z));
     [[x0, y0, z0], [x1, y1, z1]]

@@ -66,8 +66,8 @@ pub(crate) trait Lanes: Copy {
     fn quarters(self, four: &[f32; 4]) -> [Self::F; 2];
     /// Adds lanes 0 to 7 and lanes 8 to 15 to eight values.
     fn add_halves(self, a: Self::F, to: &mut [f32; 8]);
-    /// Sums of lanes 0 to 7 and of lanes 8 to 15, of `a` and then of `b`.
-    fn sum_halves(self, a: Self::F, b: Self::F) -> [f32; 4];
+    /// Sums of lanes 0 to 7 and of lanes 8 to 15, of `a` and then of `b`, for each axis.
+    fn sum_halves(self, a: [Self::F; 3], b: [Self::F; 3]) -> [[f32; 4]; 3];
     /// `low[index]` in lanes 0 to 7, `high[index]` in lanes 8 to 15. Indices are below 8.
     fn look_up(self, low: &[f32; 8], high: &[f32; 8], index: &[u32; 8]) -> Self::F;
 }

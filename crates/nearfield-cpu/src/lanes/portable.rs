@@ -159,13 +159,13 @@ impl Lanes for Portable {
     }
 
     #[inline(always)]
-    fn sum_halves(self, a: [f32; 16], b: [f32; 16]) -> [f32; 4] {
+    fn sum_halves(self, a: [[f32; 16]; 3], b: [[f32; 16]; 3]) -> [[f32; 4]; 3] {
         // In the order of the vector units, so that sums are the same.
         let sum = |a: &[f32; 16], o: usize| {
-            let quarter = |o: usize| (a[o] + a[o + 2]) + (a[o + 1] + a[o + 3]);
+            let quarter = |o: usize| (a[o] + a[o + 1]) + (a[o + 2] + a[o + 3]);
             quarter(o) + quarter(o + 4)
         };
-        [sum(&a, 0), sum(&a, 8), sum(&b, 0), sum(&b, 8)]
+        from_fn(|k| [sum(&a[k], 0), sum(&a[k], 8), sum(&b[k], 0), sum(&b[k], 8)])
     }
 
     #[inline(always)]

@@ -24,6 +24,12 @@ impl Kernel for Everything<'_> {
         }
         l.compress(u16::MAX, l.max(b, c), &mut out);
         bits.extend(out.map(f32::to_bits));
+        for value in l.quarters(&[self.b[0], self.b[1], self.b[2], self.b[3]]) {
+            l.compress(u16::MAX, value, &mut out);
+            bits.extend(out.map(f32::to_bits));
+        }
+        let sums = l.sum_halves([b, c, l.mul(b, b)], [l.sub(b, c), b, l.load(&out)]);
+        bits.extend(sums.as_flattened().iter().map(|x| x.to_bits()));
         let mut out_u = [0; 16];
         l.compress_u(u16::MAX, v, &mut out_u);
         bits.extend(out_u);
