@@ -48,8 +48,10 @@ layouts! {
     pub struct SortArgs {
         /// Cells to sort into.
         pub grid: Grid,
-        /// Particles in each cell, counted from zero.
+        /// Particles in each cell: counted from zero, and zero again once all have their slots.
         pub count: Ptr<u32>,
+        /// State of the scan between the two, zeroed by the count, `[n_tiles]`.
+        pub tiles: Ptr<u64>,
         /// Positions, with radii in w where `variable`.
         pub position: Ptr<Float4>,
         /// Cell of each particle, written by the count.
@@ -60,6 +62,10 @@ layouts! {
         pub n: u32,
         /// 1 where radii are per particle.
         pub variable: u32,
+        /// Length of that state.
+        pub n_tiles: u32,
+        /// Zero.
+        pub unused: u32,
     }
 
     /// Arguments of `scan_u32` and `scan_u64`: exclusive prefix sums in one pass with look-back.
@@ -104,7 +110,19 @@ layouts! {
         pub particles: Particles,
         /// What went wrong.
         pub status: Ptr<Status>,
-        /// The step that the forces belong to.
+        /// The step that the present launches begin with.
+        pub first: Ptr<u64>,
+        /// The step that the forces belong to, from that on.
+        pub index: u32,
+        /// Zero.
+        pub unused: u32,
+    }
+
+    /// Arguments of `begin_cell_steps`.
+    pub struct FirstStepArgs {
+        /// Where [`CellStepArgs`] find it.
+        pub first: Ptr<u64>,
+        /// The step.
         pub step: u64,
     }
 
@@ -148,5 +166,56 @@ layouts! {
         pub slack: f32,
         /// Zero.
         pub unused: u32,
+    }
+
+    /// What is known of rows that were listed before their places were.
+    pub struct StagingControl {
+        /// Entries of all rows.
+        pub entries: u64,
+        /// 1 where a row or all of them had too little room.
+        pub overflow: u32,
+        /// Zero.
+        pub unused: u32,
+    }
+
+    /// Arguments of `cell_list_stage`: rows wherever there is room.
+    pub struct StageArgs {
+        /// What is listed; rows are counted too.
+        pub list: ListArgs,
+        /// Neighbours, by input index, those of a row together.
+        pub staged: Ptr<u32>,
+        /// Where each row begins there, by input index.
+        pub start: Ptr<u64>,
+        /// Zeroed before.
+        pub control: Ptr<StagingControl>,
+        /// Entries that there is room for.
+        pub capacity: u64,
+    }
+
+    /// Arguments of `copy_rows`: rows to their places.
+    pub struct CopyRowsArgs {
+        /// Row starts, `[n + 1]`.
+        pub offset: Ptr<u64>,
+        /// See [`StageArgs`].
+        pub start: Ptr<u64>,
+        /// See [`StageArgs`].
+        pub staged: Ptr<u32>,
+        /// Neighbours, by input index.
+        pub index: Ptr<u32>,
+        /// Number of rows.
+        pub n: u32,
+        /// Zero.
+        pub unused: u32,
+    }
+
+    /// Arguments of `query_*`: lists of queries among points of another set.
+    pub struct QueryArgs {
+        /// The points, in cells of one class, with rows by query; [`ListArgs::n`] is the number of queries. Radii are per
+        /// query, whatever the law says.
+        pub list: ListArgs,
+        /// Queries in an order that keeps near ones together, with radii in w.
+        pub query: Ptr<Float4>,
+        /// Row of each of these.
+        pub row: Ptr<u32>,
     }
 }
