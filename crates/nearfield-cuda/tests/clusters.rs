@@ -5,7 +5,8 @@ mod emulated;
 
 use nearfield_conformance::cases;
 use nearfield_core::{
-    Boundary, Dynamics, Engine, Interaction, Method, Particles, PerParticle, Plan, Quantities, Radii, System, oracle,
+    Boundary, Dynamics, Engine, Interaction, Method, Particles, PerParticle, Plan, Quantities, Radii, Skin, System,
+    oracle,
     potentials::{Potential, Wca},
 };
 use nearfield_cuda::{CudaEngine, Variant};
@@ -66,7 +67,7 @@ fn check_lists(cases: &[(usize, f32, f32, f32)], variant: Variant, steps: u64) {
         for (b, boundary) in BOUNDARIES.into_iter().enumerate() {
             let what = format!("{n} in {length}, cutoff {cutoff}, {boundary:?}");
             let system = moving(n, length, boundary, cutoff, speed, (10 * case + b) as u64);
-            let mut engine = loaded(&system, &Plan { skin: 0.4, ..Plan::new(Method::Cluster) });
+            let mut engine = loaded(&system, &Plan { skin: Skin::Fixed(0.4), ..Plan::new(Method::Cluster) });
             compare(&mut engine, &system, &what);
             assert_eq!(engine.cluster_variant(), Some(variant), "{what}");
             for round in 0..3 {
@@ -131,7 +132,7 @@ fn particles_with_few_neighbors_follow_the_trajectory_of_all_pairs() {
     });
     for system in [gas].into_iter().chain(soft) {
         follows_all_pairs(&system, &Plan::new(Method::Cell), 2e-3);
-        let engine = follows_all_pairs(&system, &Plan { skin: 0.0, ..Plan::new(Method::Cluster) }, 2e-3);
+        let engine = follows_all_pairs(&system, &Plan { skin: Skin::NONE, ..Plan::new(Method::Cluster) }, 2e-3);
         assert_eq!(engine.cluster_variant(), Some(Variant::Pairs));
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{
     blocks::{Blocks, Octet, PAGE},
-    quad::{self, Quad, VECTORS, squared_length, twice},
+    quad::{self, Quad, VECTORS, own_pairs, squared_length, twice},
 };
 use crate::{
     Grid, GroupBox, Run,
@@ -119,6 +119,11 @@ impl PairList {
         self.tasks.par_iter_mut().with_max_len(1).for_each(|task| super::isa().run(Prune { blocks, task }));
     }
 
+    /// Takes the outer lists as they are for the inner ones, for a single use.
+    pub fn use_once(&mut self) {
+        self.tasks.iter_mut().for_each(|task| std::mem::swap(&mut task.outer, &mut task.inner));
+    }
+
     pub fn bytes(&self) -> usize {
         self.tasks.iter().map(|t| t.outer.bytes() + t.inner.bytes() + 4 * t.second.capacity()).sum()
     }
@@ -137,10 +142,11 @@ impl Task {
 
     /// Marks the pages of blocks that are listed, or with a `grid`, for there is no list then, that may come to be.
     pub fn mark_pages(&mut self, grid: Option<&Grid>, blocks: &Blocks, seen: &mut [bool]) {
-        self.clusters_of.clone().for_each(|b| seen[b / PAGE] = true);
         let Some(grid) = grid else {
+            self.outer.segments.iter().for_each(|s| seen[s.cluster as usize / 2 / PAGE] = true);
             return self.outer.blocks.iter().for_each(|&b| seen[b as usize / PAGE] = true);
         };
+        self.clusters_of.clone().for_each(|b| seen[b / PAGE] = true);
         for first in self.clusters_of.clone().step_by(PAGE) {
             let some = first..(first + PAGE).min(self.clusters_of.end);
             let all = some.map(|b| bounds(blocks, b, blocks.cutoff)).reduce(|a, b| GroupBox {
@@ -195,9 +201,9 @@ impl lanes::Kernel for Build<'_> {
                     let last = blocks.block_of[run.end as usize - 1];
                     let near = [&mut outer.blocks, &mut *second];
                     if image == [0; 3] {
-                        find_near::<L, false>(lanes, blocks, &quads, reach2, first..last + 1, near);
+                        find_near::<L, false>(lanes, blocks, &quads, reach2, b as u32, first..last + 1, near);
                     } else {
-                        find_near::<L, true>(lanes, blocks, &quads, reach2, first..last + 1, near);
+                        find_near::<L, true>(lanes, blocks, &quads, reach2, b as u32, first..last + 1, near);
                     }
                 }
                 let middle = outer.blocks.len();
@@ -211,7 +217,7 @@ impl lanes::Kernel for Build<'_> {
     }
 }
 
-/// Appends the blocks of a run that are within reach (squared) of either cluster of a block. No particle has crossed a
+/// Appends the blocks of a run that are within reach (squared) of either cluster of block `b`. No particle has crossed a
 /// face yet.
 #[inline(always)]
 fn find_near<L: Lanes, const IMAGES: bool>(
@@ -219,38 +225,29 @@ fn find_near<L: Lanes, const IMAGES: bool>(
     blocks: &Blocks,
     quads: &[Quad<L>; 2],
     reach2: L::F,
+    b: u32,
     run: Range<u32>,
     [first, second]: [&mut Vec<u32>; 2],
 ) {
     // Each is written and then kept or not: a branch would be foretold wrongly half of the time.
-    let (mut a, mut b) = (first.len(), second.len());
-    first.resize(a + run.len(), 0);
-    second.resize(b + run.len(), 0);
+    let mut ends = [first.len(), second.len()];
+    first.resize(ends[0] + run.len(), 0);
+    second.resize(ends[1] + run.len(), 0);
+    let reach2 = [reach2; VECTORS];
     for j in run {
-        first[a] = j;
-        second[b] = j;
-        a += usize::from(any_within::<L, IMAGES>(
-            lanes,
-            blocks,
-            &blocks.midway,
-            &quads[0],
-            j as usize,
-            [reach2; VECTORS],
-        ));
-        b += usize::from(any_within::<L, IMAGES>(
-            lanes,
-            blocks,
-            &blocks.midway,
-            &quads[1],
-            j as usize,
-            [reach2; VECTORS],
-        ));
+        first[ends[0]] = j;
+        second[ends[1]] = j;
+        for half in 0..2 {
+            let pairs = if j == b { own_pairs(half) } else { [u16::MAX; VECTORS] };
+            let near = any_within::<L, IMAGES>(lanes, blocks, &blocks.midway, &quads[half], j as usize, reach2, pairs);
+            ends[half] += usize::from(near);
+        }
     }
-    first.truncate(a);
-    second.truncate(b);
+    first.truncate(ends[0]);
+    second.truncate(ends[1]);
 }
 
-/// Whether any pair of a cluster and block `j`, at `position`, is within its reach (squared).
+/// Whether any of the `pairs` of a cluster and block `j`, at `position`, is within its reach (squared).
 #[inline(always)]
 fn any_within<L: Lanes, const IMAGES: bool>(
     lanes: L,
@@ -259,20 +256,26 @@ fn any_within<L: Lanes, const IMAGES: bool>(
     quad: &Quad<L>,
     j: usize,
     reach2: [L::F; VECTORS],
+    pairs: [u16; VECTORS],
 ) -> bool {
     let at = twice(lanes, &position[j]);
     let shifts = if IMAGES { quad.shifts(lanes, blocks, j) } else { [at; VECTORS] };
     let first = squared_length(lanes, quad.displacement::<IMAGES>(lanes, 0, at, &shifts));
     let second = squared_length(lanes, quad.displacement::<IMAGES>(lanes, 1, at, &shifts));
-    lanes.lt(first, reach2[0]) | lanes.lt(second, reach2[1]) != 0
+    (lanes.lt(first, reach2[0]) & pairs[0]) | (lanes.lt(second, reach2[1]) & pairs[1]) != 0
 }
 
 /// The box around the particles of block `b` where they are expected.
 fn bounds(blocks: &Blocks, b: usize, radius: f32) -> GroupBox {
     let n = blocks.particles(b).len();
-    let position = &blocks.midway[b].0;
-    let over = |from: f32, f: fn(f32, f32) -> f32| position.map(|x| x[..n].iter().fold(from, |m, &v| f(m, v)));
-    GroupBox { lo: over(f32::INFINITY, f32::min), hi: over(f32::NEG_INFINITY, f32::max), radius }
+    let (mut lo, mut hi) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+    for axis in 0..3 {
+        for &x in &blocks.midway[b].0[axis][..n] {
+            lo[axis] = if x < lo[axis] { x } else { lo[axis] };
+            hi[axis] = if x > hi[axis] { x } else { hi[axis] };
+        }
+    }
+    GroupBox { lo, hi, radius }
 }
 
 struct Prune<'a> {
@@ -303,13 +306,15 @@ impl lanes::Kernel for Prune<'_> {
             let start = end;
             for &j in &outer.blocks[segment.start as usize..segment.end as usize] {
                 let b = j as usize;
+                let own = segment.own && b == block;
+                let pairs = if own { own_pairs(cluster) } else { [u16::MAX; VECTORS] };
                 let theirs = lanes.twice(&blocks.budget[b]);
                 let reach = [lanes.add(ranges[0], theirs), lanes.add(ranges[1], theirs)];
                 let reach2 = [lanes.mul(reach[0], reach[0]), lanes.mul(reach[1], reach[1])];
                 let near = if with_images || blocks.crossed[b] {
-                    any_within::<L, true>(lanes, blocks, midway, &quad, b, reach2)
+                    any_within::<L, true>(lanes, blocks, midway, &quad, b, reach2, pairs)
                 } else {
-                    any_within::<L, false>(lanes, blocks, midway, &quad, b, reach2)
+                    any_within::<L, false>(lanes, blocks, midway, &quad, b, reach2, pairs)
                 };
                 // Written and then kept or not: a branch would be foretold wrongly half of the time.
                 inner.blocks[end] = j;

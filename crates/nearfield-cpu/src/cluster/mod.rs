@@ -57,8 +57,18 @@ pub(crate) struct Clusters {
     sums: sums::PageSums,
     /// Whether the list serves: it was built for particles in this order and has not been outrun.
     valid: bool,
+    /// How often the list was pruned.
+    prunings: u64,
     /// Whether all particles keep to their budgets, where that was found out when they moved.
     kept: Option<bool>,
+}
+
+/// The work a list has made.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Counts {
+    /// Pairs of clusters and blocks.
+    pub entries: u64,
+    pub prunings: u64,
 }
 
 /// Moves particles.
@@ -83,10 +93,23 @@ impl Clusters {
         if !kept.unwrap_or_else(|| self.blocks.refresh(moving.position)) {
             self.valid = self.blocks.plan_motion(moving);
             if self.valid {
-                self.list.prune(&self.blocks);
+                self.prune();
             }
         }
         self.valid
+    }
+
+    fn prune(&mut self) {
+        self.list.prune(&self.blocks);
+        self.prunings += 1;
+    }
+
+    /// What the list holds and how often it was pruned.
+    pub fn counts(&self) -> Counts {
+        Counts {
+            entries: self.list.tasks.iter().map(|task| task.outer.blocks.len() as u64).sum(),
+            prunings: self.prunings,
+        }
     }
 
     /// The order of particles in which blocks are contiguous: place k is for particle `order[k]` of the grid's input.
@@ -95,17 +118,23 @@ impl Clusters {
     }
 
     /// Builds blocks and list, for particles in [`Clusters::order`]. `skin` is the sum of what two particles may move
-    /// before the list is outrun. False when the list would take more than `budget` bytes: there is none then.
+    /// before the list is outrun; without any it is good for one evaluation. False when the list would take more than
+    /// `budget` bytes: there is none then.
     pub fn build(&mut self, grid: &Grid, physics: &Physics, moving: Moving, skin: f32, budget: u64) -> bool {
         self.blocks.fill(grid, physics, moving, skin);
-        self.valid = self.list.build(grid, &self.blocks, physics.cutoff() + skin, budget);
-        if self.valid {
+        let listed = self.list.build(grid, &self.blocks, physics.cutoff() + skin, budget);
+        self.valid = listed && skin > 0.0;
+        if listed {
             self.sums.lay_out(&mut self.list, &self.blocks, None);
-            // What is left is nothing where there is no skin: the list is then for one evaluation.
-            self.blocks.plan_motion(moving);
-            self.list.prune(&self.blocks);
         }
-        self.valid
+        if self.valid {
+            self.blocks.plan_motion(moving);
+            self.prunings = 0;
+            self.prune();
+        } else if listed {
+            self.list.use_once();
+        }
+        listed
     }
 
     /// Builds blocks without a list, for particles in [`Clusters::order`] that are to be evaluated once, with the grid.
