@@ -5,8 +5,9 @@
 //! JSON for each case. Threads: RAYON_NUM_THREADS.
 //! - `N`, `N:SKIN`: the melt, density 0.8442, cutoff 2.5, dt 0.005, after 200 steps of melting from T = 1.44; the default is
 //!   `auto`.
-//! - `N:rR:SKIN`: paper A's lattice, spacing 10 with walls, cutoff R, moving at T = 1 by steps of 0.001.
-//! - `N:rR`: the same lattice at rest: the median of three evaluations of forces, structure included; `uniform` or
+//! - `N:rR:SKIN`: as paper A's disordered particles, one to a cube of 10 with walls, cutoff R, moving at T = 1 by steps of
+//!   0.001 and no farther than 0.01.
+//! - `N:rR`: paper A's lattice, spacing 10 with walls, at rest: the median of three evaluations of forces, structure included; `uniform` or
 //!   `lognormal` for R gives paper A's radii, U(1, 160) and LN(1, 2) within 1 to 330.
 //!
 //! What moves gives ns per particle and step of the phases that the engine reports, and of the whole: medians over
@@ -38,18 +39,21 @@ fn main() {
         }
         let n = n.expect("a number of particles");
         match (cutoff, skin) {
-            (Some(r), None) => evaluate(lattice(n, &r), &plan),
-            (Some(r), Some(skin)) => run(lattice(n, &r), Dynamics::nve(0.001), &Plan { skin, ..plan }),
+            (Some(r), None) => evaluate(spaced(n, 0.01, &r), &plan),
+            (Some(r), Some(skin)) => {
+                let dynamics = Dynamics { max_displacement: 0.01, ..Dynamics::nve(0.001) };
+                run(spaced(n, 1.0, &r), dynamics, &Plan { skin, ..plan });
+            }
             (None, skin) => run(crystal(n), Dynamics::nve(0.005), &Plan { skin: skin.unwrap_or(Skin::Auto), ..plan }),
         }
     }
 }
 
-/// Paper A's lattice.
-fn lattice(n: usize, radii: &str) -> System {
+/// Particles somewhere near the points of a lattice, anywhere in its cells with a `spread` of 1.
+fn spaced(n: usize, spread: f32, radii: &str) -> System {
     let side = (n as f64).cbrt().round() as usize;
     let mut rng = rand_pcg::Pcg64::seed_from_u64(1);
-    let mut along = |cell: usize| (cell as f32 + 0.5 + 0.01 * (rng.random::<f32>() - 0.5)) * 10.0;
+    let mut along = |cell: usize| (cell as f32 + 0.5 + spread * (rng.random::<f32>() - 0.5)) * 10.0;
     let points = (0..side.pow(3)).map(|k| [k % side, k / side % side, k / side / side].map(&mut along));
     let mut particles = Particles::at(points.collect::<Vec<_>>());
     heat(&mut particles, 1.0);

@@ -37,11 +37,11 @@ impl PowerLaw {
         self.weight == 0.0
     }
 
-    /// The exponent, near `expected` while x have hardly differed.
+    /// The exponent, near `expected` while x have hardly differed, and between zero and twice that.
     pub fn exponent(&self, expected: f64) -> f64 {
         let squares = self.xx - self.x * self.x / self.weight;
         let products = self.xy - self.x * self.y / self.weight;
-        (products + BELIEF * expected) / (squares + BELIEF)
+        ((products + BELIEF * expected) / (squares + BELIEF)).clamp(0.0, 2.0 * expected)
     }
 
     /// y at `x` where the exponent is `exponent`.

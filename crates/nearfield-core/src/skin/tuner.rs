@@ -24,6 +24,8 @@ const FIRST_LIFE: f64 = 15.0;
 const STRIDE: i32 = OCTAVE;
 /// Expected exponents of life in the skin, and of size in range plus skin.
 const EXPECTED: [f64; 2] = [1.0, 3.0];
+/// Part of the work of sorting that is the least work of listing: where hardly anything is near, sizes follow no power.
+const LEAST_LISTING: f64 = 0.01;
 /// A list that serves so many times the steps foreseen, or this part of them, shows that the motion has changed.
 const SURPRISE: f64 = 2.5;
 
@@ -102,9 +104,10 @@ impl SkinTuner {
     /// Learns from a list of the present skin that has been outrun, and chooses the next skin.
     pub fn record(&mut self, list: ListUse) {
         let skin = f64::from(self.skin());
-        if !self.is_auto() || list.steps == 0 || skin <= 0.0 || list.listing <= 0.0 {
+        if !self.is_auto() || list.steps == 0 || skin <= 0.0 {
             return;
         }
+        let size = list.listing.max(LEAST_LISTING * list.sorting);
         let (learned, steps) = (&mut self.learned, list.steps as f64);
         if !learned.life.is_empty() {
             let foreseen = learned.life.at(skin, learned.life.exponent(EXPECTED[0]));
@@ -113,9 +116,9 @@ impl SkinTuner {
             }
         }
         learned.life.add(skin, steps);
-        learned.listing.add(self.range + skin, list.listing);
+        learned.listing.add(self.range + skin, size);
         let (of_life, of_size) = (learned.life.exponent(EXPECTED[0]), learned.listing.exponent(EXPECTED[1]));
-        let reading = list.reading / list.listing;
+        let reading = list.reading / size;
         let cost = |rung: i32| {
             let skin = self.of_rung(rung).min(f64::from(self.room));
             let life = self.learned.life.at(skin, of_life).max(1.0);
@@ -232,6 +235,17 @@ mod tests {
             );
             assert!(a < 1.02 && b < 1.02 && c < 1.02, "{longest_step}: {a} {b} {c}");
         }
+    }
+
+    #[test]
+    fn where_nothing_is_near_the_skin_grows_as_far_as_it_may() {
+        let mut tuner = SkinTuner::new(Skin::Auto, 1.0, 100.0);
+        tuner.guess(0.005);
+        for _ in 0..20 {
+            let steps = (150.0 * tuner.skin()) as u64;
+            tuner.record(ListUse { steps, sorting: 100.0, listing: 0.0, reading: 0.0 });
+        }
+        assert!(tuner.skin() > 1.0, "{}", tuner.skin());
     }
 
     #[test]
