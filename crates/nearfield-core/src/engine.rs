@@ -86,7 +86,7 @@ pub struct Report {
     pub build_seconds: f64,
     /// Seconds spent refitting.
     pub refit_seconds: f64,
-    /// Seconds spent finding and consuming pairs.
+    /// Seconds spent finding and consuming pairs; with what was built in between where many steps were timed as one.
     pub query_seconds: f64,
     /// Seconds spent integrating, reordering and summing.
     pub integrate_seconds: f64,

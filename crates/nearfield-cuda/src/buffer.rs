@@ -1,6 +1,6 @@
 //! Typed arrays in device memory.
 
-use crate::Gpu;
+use crate::{Gpu, gpu::Queue};
 use nearfield_core::Result;
 use nearfield_kernels::{Layout, Ptr};
 use std::{marker::PhantomData, sync::Arc};
@@ -69,15 +69,27 @@ impl<T: Layout> Buffer<T> {
     /// Sets every bit to zero.
     ///
     /// # Errors
-    /// As [`Gpu::fill`].
+    /// As [`Queue::fill`].
     pub fn zero(&mut self) -> Result<()> {
         self.fill(0)
+    }
+
+    /// The same as work of a queue.
+    ///
+    /// # Errors
+    /// As [`Queue::fill`].
+    pub fn zero_by(&mut self, queue: &dyn Queue) -> Result<()> {
+        if self.len == 0 {
+            return Ok(());
+        }
+        // SAFETY: the array is that long.
+        unsafe { queue.fill(self.address, 0, self.len * size_of::<T>()) }
     }
 
     /// Sets every byte to `value`.
     ///
     /// # Errors
-    /// As [`Gpu::fill`].
+    /// As [`Queue::fill`].
     pub fn fill(&mut self, value: u8) -> Result<()> {
         if self.len == 0 {
             return Ok(());

@@ -4,11 +4,33 @@
 //! kernel sources on the host, so that the engine is tested where there is no GPU. Calls are asynchronous in one order,
 //! that of a CUDA stream, except where they say that they wait.
 
+use crate::Sequence;
 use nearfield_core::Result;
 use nearfield_kernels::{Float4, Kernel, Layout, Primitive, Ptr, RayProgram};
 
+/// Where work is put: a device, which begins it at once, or a [`Sequence`].
+pub trait Queue {
+    /// Enqueues a kernel; prefer [`launch`].
+    ///
+    /// # Safety
+    /// The addresses in `arguments` are of memory as large as the kernel takes it to be, and stay so until it has run.
+    ///
+    /// # Errors
+    /// [`nearfield_core::Error::Device`].
+    unsafe fn launch(&self, launch: Launch) -> Result<()>;
+
+    /// Sets each byte to `value`.
+    ///
+    /// # Safety
+    /// `to` is the address of at least `bytes` bytes of the device, until the work is done.
+    ///
+    /// # Errors
+    /// [`nearfield_core::Error::Device`].
+    unsafe fn fill(&self, to: u64, value: u8, bytes: usize) -> Result<()>;
+}
+
 /// A device, or a stand-in for one.
-pub trait Gpu: Send + Sync {
+pub trait Gpu: Queue + Send + Sync {
     /// Name of the device, for reports.
     fn name(&self) -> String;
 
@@ -48,15 +70,6 @@ pub trait Gpu: Send + Sync {
     /// [`nearfield_core::Error::Device`], of any work enqueued before.
     unsafe fn download(&self, from: u64, data: &mut [u8]) -> Result<()>;
 
-    /// Sets each byte to `value`.
-    ///
-    /// # Safety
-    /// `to` is the address of at least `bytes` bytes of this device.
-    ///
-    /// # Errors
-    /// [`nearfield_core::Error::Device`].
-    unsafe fn fill(&self, to: u64, value: u8, bytes: usize) -> Result<()>;
-
     /// Copies within the device.
     ///
     /// # Safety
@@ -66,14 +79,15 @@ pub trait Gpu: Send + Sync {
     /// [`nearfield_core::Error::Device`].
     unsafe fn copy(&self, from: u64, to: u64, bytes: usize) -> Result<()>;
 
-    /// Enqueues a kernel; prefer [`launch`].
+    /// Enqueues all work of a sequence. A device may find that cheaper than its parts, the more so if there was an equal
+    /// sequence before.
     ///
     /// # Safety
-    /// The addresses in `arguments` are of memory as large as the kernel takes it to be, and stay so until it has run.
+    /// As for each part of it.
     ///
     /// # Errors
     /// [`nearfield_core::Error::Device`].
-    unsafe fn launch(&self, launch: Launch) -> Result<()>;
+    unsafe fn run(&self, sequence: &Sequence) -> Result<()>;
 
     /// A point in time between the work enqueued before and after.
     ///
@@ -121,11 +135,11 @@ pub struct Launch<'a> {
 /// Enqueues a kernel with enough blocks for `threads` threads; nothing when there are none.
 ///
 /// # Safety
-/// As [`Gpu::launch`].
+/// As [`Queue::launch`].
 ///
 /// # Errors
-/// As [`Gpu::launch`].
-pub unsafe fn launch<A: Layout>(gpu: &dyn Gpu, kernel: Kernel<A>, threads: u64, arguments: &A) -> Result<()> {
+/// As [`Queue::launch`].
+pub unsafe fn launch<A: Layout>(queue: &dyn Queue, kernel: Kernel<A>, threads: u64, arguments: &A) -> Result<()> {
     if threads == 0 {
         return Ok(());
     }
@@ -137,7 +151,7 @@ pub unsafe fn launch<A: Layout>(gpu: &dyn Gpu, kernel: Kernel<A>, threads: u64, 
         arguments: bytemuck::bytes_of(arguments),
     };
     // SAFETY: the caller's promise.
-    unsafe { gpu.launch(launch) }
+    unsafe { queue.launch(launch) }
 }
 
 /// A point in the time of a device.
@@ -197,7 +211,7 @@ pub trait RayTracing {
     /// Runs `rays` instances of a program; prefer [`trace`].
     ///
     /// # Safety
-    /// As [`Gpu::launch`], for the parameters and the structure they name.
+    /// As [`Queue::launch`], for the parameters and the structure they name.
     ///
     /// # Errors
     /// [`nearfield_core::Error::Device`].
@@ -224,7 +238,7 @@ pub struct Trace<'a> {
 /// Runs `rays` instances of a program; nothing when there are none.
 ///
 /// # Safety
-/// As [`Gpu::launch`], for the parameters and the structure they name.
+/// As [`Queue::launch`], for the parameters and the structure they name.
 ///
 /// # Errors
 /// [`nearfield_core::Error::Device`].

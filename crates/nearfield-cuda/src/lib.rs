@@ -8,6 +8,7 @@ pub mod gpu;
 pub mod grid;
 mod list;
 mod scan;
+mod sequence;
 pub mod tracing;
 
 pub use buffer::Buffer;
@@ -16,3 +17,4 @@ pub use device::{CudaDevice, DeviceInfo, Unavailable, devices};
 pub use engine::CudaEngine;
 pub use gpu::Gpu;
 pub use list::DeviceList;
+pub use sequence::Sequence;

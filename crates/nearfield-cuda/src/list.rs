@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 /// A neighbour list on the device in compressed sparse rows.
 pub struct DeviceList {
+    gpu: Arc<dyn Gpu>,
     scan: Scan,
     /// Entries of each row, which kernels count and, where several write a row, count down again as they fill it.
     pub(crate) count: Buffer<u32>,
@@ -23,6 +24,7 @@ impl DeviceList {
     /// Without rows yet.
     pub fn new(gpu: &Arc<dyn Gpu>) -> Self {
         Self {
+            gpu: gpu.clone(),
             scan: Scan::new(gpu),
             count: Buffer::new(gpu, "neighbour counts"),
             number: Buffer::new(gpu, "input indices in cell order"),
@@ -40,7 +42,7 @@ impl DeviceList {
 
     /// Sums the counts into row starts and gives the number of entries; waits for the device.
     pub(crate) fn place_rows(&mut self) -> Result<u64> {
-        self.scan.run_wide(&self.count, &mut self.offset)?;
+        self.scan.run_wide(&*self.gpu, &self.count, &mut self.offset)?;
         self.start_of(self.count.len())
     }
 

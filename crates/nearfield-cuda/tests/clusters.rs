@@ -5,8 +5,8 @@ mod emulated;
 
 use nearfield_conformance::cases;
 use nearfield_core::{
-    Boundary, Dynamics, Engine, Interaction, Method, Particles, PerParticle, Plan, Quantities, Radii, Skin, System,
-    oracle,
+    Boundary, Dynamics, Engine, Ensemble, Interaction, Method, Particles, PerParticle, Plan, Quantities, Radii, Skin,
+    System, Truncation, oracle,
     potentials::{Potential, Wca},
 };
 use nearfield_cuda::{CudaEngine, Variant};
@@ -155,19 +155,123 @@ fn follows_all_pairs(system: &System, plan: &Plan, tolerance: f32) -> CudaEngine
     engine
 }
 
-fn steps_recorded_one_by_one_are_those_of_lists() {
-    let system = cases::liquid(4, 1.0, 0.05, 2.2, 1);
-    let ends = [false, true].map(|record| {
-        let mut engine = loaded(&system, &Plan::new(Method::Cluster));
-        engine.record_history(record);
-        engine.advance(&Dynamics::nve(0.004), 0, 30, Quantities::FORCES).expect("a run");
-        assert_eq!(engine.report().evaluations, 31);
+/// Two atoms at each point of a lattice, all on their way through the box: nobody ever has more than one neighbour, so
+/// sums are the same to the bit in any order.
+fn pairs_of_atoms(spacing: f32, truncation: Truncation) -> System {
+    let sim_box = cases::cube(4.0 * spacing, [Boundary::Periodic; 3]);
+    let of = |k: usize| [k % 4, k / 4 % 4, k / 16].map(|k| (k as f32 + 0.5) * spacing);
+    let atoms = (0..64).flat_map(|k| [of(k), [of(k)[0] + 1.1, of(k)[1], of(k)[2]]]).collect();
+    let mut system = cases::soft(sim_box, atoms, Radii::Uniform(1.5));
+    system.interaction = Interaction { truncation, ..Interaction::lennard_jones() };
+    cases::thermalize(&mut system, 0.05, &mut cases::rng(5));
+    for i in 0..system.particles.len() {
+        let [x, y, z] = system.particles.velocity.get(i);
+        system.particles.velocity.set(i, [x + 9.0, y + 6.0, z - 3.0]);
+    }
+    system
+}
+
+/// Stretches of lists and steps or of cells and steps, short ones, and steps one by one, between which lists are not made
+/// at the same steps; with random numbers that belong to a step.
+fn steps_do_not_depend_on_how_they_are_enqueued() {
+    let ensemble = Ensemble::Langevin { temperature: 0.05, friction: 0.1 };
+    let langevin = Dynamics { ensemble, seed: 9, ..Dynamics::nve(0.004) };
+    // Plain Lennard-Jones is not computed alike with and without random numbers.
+    let motions = [(Dynamics::nve(0.004), Truncation::Cut), (langevin, Truncation::Force)];
+    let clusters = |skin| Plan { skin, ..Plan::new(Method::Cluster) };
+    let cases = [
+        (3.5, clusters(0.4), Some(Variant::List)),
+        (8.0, clusters(0.4), Some(Variant::SparseList)),
+        (8.0, clusters(0.0), Some(Variant::Pairs)),
+        (8.0, Plan::new(Method::Cell), None),
+    ];
+    for (spacing, plan, variant) in cases {
+        for (dynamics, truncation) in &motions {
+            let system = pairs_of_atoms(spacing, *truncation);
+            let run = |record: bool, calls: &[u64]| {
+                let mut engine = loaded(&system, &plan);
+                engine.record_history(record);
+                let mut step = 0;
+                for &steps in calls {
+                    engine.advance(dynamics, step, steps, Quantities::FORCES).expect("a run");
+                    step += steps;
+                }
+                assert_eq!(engine.cluster_variant(), variant);
+                let report = engine.report();
+                assert_eq!(report.evaluations, step + 1);
+                if variant.is_some_and(Variant::uses_list) {
+                    assert!((12..60).contains(&report.list_builds), "{report:?}");
+                } else {
+                    assert_eq!(report.builds, step + 1);
+                }
+                let mut end = Particles::default();
+                engine.snapshot(&mut end).expect("a copy");
+                end
+            };
+            let one_by_one = run(true, &[130]);
+            for calls in [&[130][..], &[1, 2, 3, 17, 5, 102], &[1; 130]] {
+                assert!(run(false, calls) == one_by_one, "{variant:?}, {calls:?}");
+            }
+        }
+    }
+}
+
+/// Particles that all fly towards the centre, which makes lists longer.
+fn collapsing() -> System {
+    let mut system = moving(700, 18.0, [Boundary::Open; 3], 4.0, 0.01, 11);
+    for i in 0..system.particles.len() {
+        system.particles.velocity.set(i, system.particles.position.get(i).map(|x| -1.7 * (x - 9.0)));
+    }
+    system
+}
+
+fn lists_that_outgrow_their_room_within_a_call_get_more() {
+    let system = collapsing();
+    let mut engine = follows_all_pairs(&system, &Plan::new(Method::Cluster), 1e-4);
+    let before = engine.report();
+    engine.advance(&Dynamics::nve(0.004), 60, 35, Quantities::FORCES).expect("a run");
+    let after = engine.report();
+    assert!(after.structure_bytes > before.structure_bytes, "{before:?} {after:?}");
+    assert_eq!((engine.cluster_variant(), after.evaluations), (Some(Variant::List), 96));
+    compare(&mut engine, &system, "a collapse");
+}
+
+fn lists_that_outgrow_the_budget_within_a_call_are_given_up() {
+    let system = collapsing();
+    // Not too small for the first list.
+    let plan = Plan { memory_budget: 60_000, ..Plan::new(Method::Cluster) };
+    let mut engine = loaded(&system, &plan);
+    engine.advance(&Dynamics::nve(0.004), 0, 1, Quantities::FORCES).expect("a run");
+    assert_eq!(engine.cluster_variant(), Some(Variant::List));
+    engine.advance(&Dynamics::nve(0.004), 1, 94, Quantities::FORCES).expect("a run");
+    let report = engine.report();
+    assert_eq!((engine.cluster_variant(), report.evaluations), (Some(Variant::Pairs), 96));
+    assert!(report.list_builds > 3 && report.batched_evaluations > 3, "{report:?}");
+    compare(&mut engine, &system, "a collapse without lists");
+    let mut by_all_pairs = loaded(&system, &Plan::new(Method::Brute));
+    by_all_pairs.advance(&Dynamics::nve(0.004), 0, 95, Quantities::FORCES).expect("a run");
+    let (mut found, mut expected) = (Particles::default(), Particles::default());
+    engine.snapshot(&mut found).expect("a copy");
+    by_all_pairs.snapshot(&mut expected).expect("a copy");
+    for (a, b) in found.velocity.axes().into_iter().flatten().zip(expected.velocity.axes().into_iter().flatten()) {
+        assert!((a - b).abs() < 1e-3, "{a} {b}");
+    }
+}
+
+fn one_particle_and_none_make_their_steps() {
+    for n in [0, 1] {
+        let system = moving(n, 20.0, [Boundary::Periodic; 3], 2.5, 3.0, 1);
+        let mut engine = loaded(&system, &Plan { skin: Skin::Fixed(0.4), ..Plan::new(Method::Cluster) });
+        engine.advance(&Dynamics::nve(0.004), 0, 301, Quantities::FORCES).expect("a run");
+        assert_eq!(engine.report().evaluations, 302);
         let mut end = Particles::default();
         engine.snapshot(&mut end).expect("a copy");
-        end
-    });
-    // The emulator adds in a fixed order, so they are the same to the bit.
-    assert!(ends[0] == ends[1]);
+        let mut free = loaded(&system, &Plan::new(Method::Brute));
+        free.advance(&Dynamics::nve(0.004), 0, 301, Quantities::FORCES).expect("a run");
+        let mut expected = Particles::default();
+        free.snapshot(&mut expected).expect("a copy");
+        assert!(end == expected);
+    }
 }
 
 fn a_list_beyond_the_budget_is_not_kept() {
@@ -181,7 +285,7 @@ fn a_list_beyond_the_budget_is_not_kept() {
 }
 
 fn main() {
-    let tests: [(&str, fn()); 7] = [
+    let tests: [(&str, fn()); 10] = [
         ("lists_of_any_age_hold_every_pair", lists_of_any_age_hold_every_pair),
         ("sparse_lists_of_any_age_hold_every_pair", sparse_lists_of_any_age_hold_every_pair),
         ("pairs_are_found_once_in_dense_systems", pairs_are_found_once_in_dense_systems),
@@ -193,7 +297,13 @@ fn main() {
             "particles_with_few_neighbors_follow_the_trajectory_of_all_pairs",
             particles_with_few_neighbors_follow_the_trajectory_of_all_pairs,
         ),
-        ("steps_recorded_one_by_one_are_those_of_lists", steps_recorded_one_by_one_are_those_of_lists),
+        ("steps_do_not_depend_on_how_they_are_enqueued", steps_do_not_depend_on_how_they_are_enqueued),
+        ("lists_that_outgrow_their_room_within_a_call_get_more", lists_that_outgrow_their_room_within_a_call_get_more),
+        (
+            "lists_that_outgrow_the_budget_within_a_call_are_given_up",
+            lists_that_outgrow_the_budget_within_a_call_are_given_up,
+        ),
+        ("one_particle_and_none_make_their_steps", one_particle_and_none_make_their_steps),
         ("a_list_beyond_the_budget_is_not_kept", a_list_beyond_the_budget_is_not_kept),
     ];
     emulated::run(tests);

@@ -8,7 +8,10 @@ use crate::{
     tracing::{Acceleration, Seen, Structures},
 };
 use nearfield_core::{Error, Result};
-use nearfield_cuda::gpu::{AccelerationStructure, Gpu, Launch, Mark, Memory, RayTracing, Trace};
+use nearfield_cuda::{
+    Sequence,
+    gpu::{AccelerationStructure, Gpu, Launch, Mark, Memory, Queue, RayTracing, Trace},
+};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Memory of a device without a stated limit, \[bytes\].
@@ -57,6 +60,22 @@ impl Emulator {
     }
 }
 
+impl Queue for Emulator {
+    unsafe fn launch(&self, launch: Launch) -> Result<()> {
+        let _turn = self.shared.lock();
+        // SAFETY: the caller's promise, and other calls wait for their turn.
+        unsafe { launch::launch(launch) }
+    }
+
+    unsafe fn fill(&self, to: u64, value: u8, bytes: usize) -> Result<()> {
+        let state = self.shared.lock();
+        let to = state.heap.range("fill", to, bytes)?;
+        // SAFETY: the range is within a buffer.
+        unsafe { to.as_ptr().write_bytes(value, bytes) }
+        Ok(())
+    }
+}
+
 impl Gpu for Emulator {
     fn name(&self) -> String {
         "emulator".into()
@@ -91,14 +110,6 @@ impl Gpu for Emulator {
         Ok(())
     }
 
-    unsafe fn fill(&self, to: u64, value: u8, bytes: usize) -> Result<()> {
-        let state = self.shared.lock();
-        let to = state.heap.range("fill", to, bytes)?;
-        // SAFETY: the range is within a buffer.
-        unsafe { to.as_ptr().write_bytes(value, bytes) }
-        Ok(())
-    }
-
     unsafe fn copy(&self, from: u64, to: u64, bytes: usize) -> Result<()> {
         if from.abs_diff(to) < bytes as u64 {
             return Err(Error::Device(format!("copy of {bytes} bytes from {from:#x} to {to:#x}: they overlap")));
@@ -110,10 +121,9 @@ impl Gpu for Emulator {
         Ok(())
     }
 
-    unsafe fn launch(&self, launch: Launch) -> Result<()> {
-        let _turn = self.shared.lock();
-        // SAFETY: the caller's promise, and other calls wait for their turn.
-        unsafe { launch::launch(launch) }
+    unsafe fn run(&self, sequence: &Sequence) -> Result<()> {
+        // SAFETY: the caller's promise.
+        unsafe { sequence.enqueue(self) }
     }
 
     fn mark(&self) -> Result<Box<dyn Mark>> {

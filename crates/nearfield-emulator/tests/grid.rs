@@ -102,7 +102,7 @@ impl Device {
 
     fn build(&mut self) {
         // SAFETY: there are n positions.
-        unsafe { self.grid.build(self.position.ptr(), self.n, self.law.variable != 0) }.unwrap();
+        unsafe { self.grid.build(&*self.gpu, self.position.ptr(), self.n, self.law.variable != 0) }.unwrap();
     }
 
     fn candidates(&self, cells: bool) -> Candidates<'_> {

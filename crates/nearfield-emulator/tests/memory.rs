@@ -3,7 +3,7 @@
 mod common;
 use common::*;
 use nearfield_core::Error;
-use nearfield_cuda::gpu::{Gpu, Memory};
+use nearfield_cuda::gpu::{Gpu, Memory, Queue};
 use nearfield_emulator::Emulator;
 
 #[test]

@@ -39,21 +39,26 @@ __device__ inline Sums<false, false> force_in(const GatherArgs& g, u32 slot, con
     return sums;
 }
 
-template <class L> __device__ inline void cell_step(const CellStepArgs& a) {
+template <class L, bool NOISE> __device__ inline void cell_step(const CellStepArgs& a) {
     const GatherArgs& g = a.gather;
     const u32 slot = thread_index();
     if (slot >= g.n) return;
     const u32 i = g.grid.particle[slot];
     Moving p = {g.grid.slot[slot], a.particles.velocity[i], {0, 0, 0}, false};
     const Sums<false, false> sums = force_in<L>(g, slot, p.position, __float_as_uint(p.velocity.w));
-    advance(a.integrator, a.status, a.particles.id, i, a.step, p, make_float4(sums.x, sums.y, sums.z, 0.0f));
+    const u64 step = *a.first + a.index;
+    advance<NOISE>(a.integrator, a.status, a.particles, i, step, p, make_float4(sums.x, sums.y, sums.z, 0.0f));
     store_moving(a.particles, i, p);
 }
 
+KERNEL(begin_cell_steps, FirstStepArgs, 32) {
+    if (thread_index() == 0) *a.first = a.step;
+}
+
 KERNEL_MIN_BLOCKS(cell_step_uniform, CellStepArgs, 128, 12) {
-    cell_step<UniformLennardJones>(a);
+    cell_step<UniformLennardJones, false>(a);
 }
 
 KERNEL(cell_step_any, CellStepArgs, 128) {
-    cell_step<AnyLaw>(a);
+    cell_step<AnyLaw, true>(a);
 }

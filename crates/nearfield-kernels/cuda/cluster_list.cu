@@ -1,4 +1,4 @@
-// Builds lists of clusters, and tells whether they serve.
+// Builds lists of clusters, and tells whether and how long they serve.
 
 #include "listed.cuh"
 
@@ -145,6 +145,28 @@ KERNEL_MIN_BLOCKS(list_clusters, ClusterListArgs, WARPS_PER_BLOCK* WARP, 6) {
     Listing listing(a, cluster, number, stage[warp]);
     search_cells<false>(a.grid, a.space, a.slack, cluster, cluster_bounds(listing.x), scratch[warp], listing);
     listing.finish();
+}
+
+KERNEL(begin_steps, ClusterControlArgs, 32) {
+    if (thread_index() != 0) return;
+    ClusterControl& c = *a.control;
+    c.first = c.next = a.step;
+    c.end = a.end;
+    c.lists = c.longest = c.dangerous = 0;
+}
+
+KERNEL(begin_list, ClusterControlArgs, 32) {
+    if (thread_index() != 0) return;
+    ClusterControl& c = *a.control;
+    const u32 served = (u32)(c.next - c.first);
+    if (served > 0) {
+        ++c.lists;
+        c.longest = larger(c.longest, served);
+        c.dangerous += served == 1 && c.rebuild_at <= c.next;
+    }
+    c.first = c.next;
+    c.rebuild_at = ~0ull;
+    c.chunks = c.segments = 0;
 }
 
 KERNEL(clusters_moved, ClustersMovedArgs, 256) {

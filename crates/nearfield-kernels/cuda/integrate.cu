@@ -12,9 +12,10 @@ KERNEL(integrate, IntegrateArgs, 256) {
         atomicMin(&a.status->force, failure(a.step, a.particles.id[i]));
         return;
     }
-    if (a.finish) finish_step(a.integrator, p, force);
+    const float half_kick = half_kick_of(a.integrator, p);
+    if (a.finish) finish_step(a.integrator, p, half_kick, force);
     if (a.start) {
-        start_step(a.integrator, p, force, a.particles.id[i], a.step + 1);
+        start_step<true>(a.integrator, p, half_kick, force, a.particles.id[i], a.step + 1);
         if (!all_finite(p.position)) {
             atomicMin(&a.status->position, failure(a.step + 1, a.particles.id[i]));
             return;

@@ -32,13 +32,22 @@ KERNEL(pairs_any_energy, ListedArgs, WARPS_PER_BLOCK* WARP) {
     listed_pairs<AnyLaw, true>(a);
 }
 
-// The rest of a step and the beginning of the next.
-KERNEL_MIN_BLOCKS(move_listed, ClusterStepArgs, 256, 6) {
+template <bool NOISE> __device__ inline void move_all(const ClusterStepArgs& a) {
     if (!begin_step(a)) return;
     const u32 i = thread_index();
     if (i >= a.particles.n) return;
     float4& sum = a.listed.gather.results.force[i];
-    const float4 force = sum;
+    const float4 force = sum, reference = a.reference[i];
+    const Moving p = load_moving(a.particles, i);
     sum = make_float4(0.0f, 0.0f, 0.0f, 0.0f);
-    move_particle(a, i, load_moving(a.particles, i), force);
+    move_particle<NOISE>(a, i, p, force, reference);
+}
+
+// The rest of a step and the beginning of the next.
+KERNEL_MIN_BLOCKS(move_listed, ClusterStepArgs, 256, 4) {
+    move_all<false>(a);
+}
+
+KERNEL(move_listed_any, ClusterStepArgs, 256) {
+    move_all<true>(a);
 }

@@ -21,33 +21,33 @@ template <class V> __device__ inline void list_all(const ListArgs& a) {
 }
 
 KERNEL_MIN_BLOCKS(cell_list_count, ListArgs, WARPS_PER_BLOCK* WARP, 7) {
-    list_by_cells<ListCount<false, false>, false>(a);
+    list_by_cells<ListCount<CellLister>, false>(a);
 }
 
 KERNEL_MIN_BLOCKS(cell_list_count_radii, ListArgs, WARPS_PER_BLOCK* WARP, 6) {
-    list_by_cells<ListCount<false, true>, true>(a);
+    list_by_cells<ListCount<CellListerOfRadii>, true>(a);
 }
 
 KERNEL_MIN_BLOCKS(cell_list_fill, ListArgs, WARPS_PER_BLOCK* WARP, 6) {
-    list_by_cells<ListFill<false, false>, false>(a);
+    list_by_cells<ListFill<CellLister>, false>(a);
 }
 
 KERNEL_MIN_BLOCKS(cell_list_fill_radii, ListArgs, WARPS_PER_BLOCK* WARP, 6) {
-    list_by_cells<ListFill<false, true>, true>(a);
+    list_by_cells<ListFill<CellListerOfRadii>, true>(a);
 }
 
 KERNEL_MIN_BLOCKS(brute_list_count, ListArgs, WARPS_PER_BLOCK* WARP, 6) {
-    list_all<ListCount<true, false>>(a);
+    list_all<ListCount<BruteLister>>(a);
 }
 
 KERNEL_MIN_BLOCKS(brute_list_count_radii, ListArgs, WARPS_PER_BLOCK* WARP, 6) {
-    list_all<ListCount<true, true>>(a);
+    list_all<ListCount<BruteListerOfRadii>>(a);
 }
 
 KERNEL_MIN_BLOCKS(brute_list_fill, ListArgs, WARPS_PER_BLOCK* WARP, 6) {
-    list_all<ListFill<true, false>>(a);
+    list_all<ListFill<BruteLister>>(a);
 }
 
 KERNEL_MIN_BLOCKS(brute_list_fill_radii, ListArgs, WARPS_PER_BLOCK* WARP, 6) {
-    list_all<ListFill<true, true>>(a);
+    list_all<ListFill<BruteListerOfRadii>>(a);
 }

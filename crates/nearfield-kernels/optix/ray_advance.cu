@@ -12,7 +12,7 @@ PARAMETERS(AdvanceRays)
 __device__ __noinline__ void move_particle(u32 i, float4 force) {
     Particles to = params.rays.particles;
     Moving p = load_moving(to, i);
-    advance(params.integrator, params.status, to.id, i, params.step, p, force);
+    advance<true>(params.integrator, params.status, to, i, params.step, p, force);
     to.position = params.position;
     store_moving(to, i, p);
 }

@@ -1,12 +1,12 @@
 //! Every kernel, by the structure it takes.
 
 use crate::{
-    ByForce, Kernel, Primitive, RayProgram,
+    ByForce, ByMotion, Kernel, Primitive, RayProgram,
     layouts::{
-        AdvanceRays, BodiesArgs, BoundsArgs, BoxesArgs, CellStepArgs, ClusterListArgs, ClusterStepArgs,
-        ClustersMovedArgs, FinishExactArgs, ForceRays, GatherArgs, IntegrateArgs, ListArgs, ListRays, ListedArgs,
-        MortonArgs, MotionArgs, NumberArgs, PermuteArgs, RescaleArgs, RowsArgs, SampleArgs, ScanArgs, SortArgs,
-        TotalsArgs,
+        AdvanceRays, BodiesArgs, BoundsArgs, BoxesArgs, CellStepArgs, ClusterControlArgs, ClusterListArgs,
+        ClusterStepArgs, ClustersMovedArgs, FinishExactArgs, FirstStepArgs, ForceRays, GatherArgs, IntegrateArgs,
+        ListArgs, ListRays, ListedArgs, MortonArgs, MotionArgs, NumberArgs, PermuteArgs, QueryArgs, RescaleArgs,
+        RowsArgs, SampleArgs, ScanArgs, SortArgs, TotalsArgs,
     },
 };
 
@@ -64,8 +64,11 @@ pub const CELL_FORCES: ByForce<Kernel<GatherArgs>> = ByForce {
 
 /// Forces and a step, by cells where most particles have no neighbours and one cutoff serves all pairs; a thread for each
 /// particle. In f32 and without energies.
-pub const CELL_STEP: ByForce<Kernel<CellStepArgs>> =
+pub const CELL_STEP: ByMotion<ByForce<Kernel<CellStepArgs>>> =
     steps(Kernel::new("cell_step", "cell_step_uniform", 128), Kernel::new("cell_step", "cell_step_any", 128));
+
+/// Says which step [`CELL_STEP`] begins with.
+pub const BEGIN_CELL_STEPS: Kernel<FirstStepArgs> = Kernel::new("cell_step", "begin_cell_steps", 32);
 
 /// Forces from candidates in cells, each pair found once and added to zeros, but for sums that do not depend on order.
 pub const CLUSTER_FORCES: ByForce<Kernel<GatherArgs>> = ByForce {
@@ -80,6 +83,10 @@ pub const CLUSTER_FORCES: ByForce<Kernel<GatherArgs>> = ByForce {
 pub const LIST_CLUSTERS: Kernel<ClusterListArgs> = Kernel::new("cluster_list", "list_clusters", 128);
 /// Most chunks of a segment of these lists but the last.
 pub const SEGMENT: usize = 15;
+/// Says which steps may be made by lists.
+pub const BEGIN_STEPS: Kernel<ClusterControlArgs> = Kernel::new("cluster_list", "begin_steps", 32);
+/// Notes how the list has served, and that there is none now.
+pub const BEGIN_LIST: Kernel<ClusterControlArgs> = Kernel::new("cluster_list", "begin_list", 32);
 /// Whether lists serve the present positions.
 pub const CLUSTERS_MOVED: Kernel<ClustersMovedArgs> = Kernel::new("cluster_list", "clusters_moved", 256);
 
@@ -102,14 +109,18 @@ pub const LISTED_PAIRS: ByForce<Kernel<ListedArgs>> = ByForce {
     ..LISTED_FORCES
 };
 /// A step by the forces of [`LISTED_PAIRS`], which become zero.
-pub const MOVE_LISTED: Kernel<ClusterStepArgs> = Kernel::new("listed_pairs", "move_listed", 256);
+pub const MOVE_LISTED: ByMotion<Kernel<ClusterStepArgs>> = ByMotion {
+    newton: Kernel::new("listed_pairs", "move_listed", 256),
+    any: Kernel::new("listed_pairs", "move_listed_any", 256),
+};
 
 /// Forces and a step, by lists most of which are empty; a thread for each particle. In f32 and without energies.
-pub const STEP_SPARSE: ByForce<Kernel<ClusterStepArgs>> =
+pub const STEP_SPARSE: ByMotion<ByForce<Kernel<ClusterStepArgs>>> =
     steps(Kernel::new("cluster_step", "step_sparse_uniform", 128), Kernel::new("cluster_step", "step_sparse_any", 128));
 
-const fn steps<A>(uniform_lj: Kernel<A>, any: Kernel<A>) -> ByForce<Kernel<A>> {
-    ByForce { fast: any, energy: any, exact: any, exact_energy: any, uniform_lj, scaled_lj: any }
+const fn steps<A>(uniform_lj: Kernel<A>, any: Kernel<A>) -> ByMotion<ByForce<Kernel<A>>> {
+    let always = ByForce { fast: any, energy: any, exact: any, exact_energy: any, uniform_lj: any, scaled_lj: any };
+    ByMotion { newton: ByForce { uniform_lj, ..always }, any: always }
 }
 
 /// Forces by testing all pairs; a warp for each [`CLUSTER`].
@@ -151,6 +162,11 @@ pub const BRUTE_LIST_RADII: ListKernels = ListKernels {
     count: Kernel::new("lists", "brute_list_count_radii", 128),
     fill: Kernel::new("lists", "brute_list_fill_radii", 128),
 };
+
+/// Entries of the row of each query among points in cells; a warp for each [`CLUSTER`].
+pub const QUERY_COUNT: Kernel<QueryArgs> = Kernel::new("queries", "query_count", 128);
+/// These rows.
+pub const QUERY_FILL: Kernel<QueryArgs> = Kernel::new("queries", "query_fill", 128);
 
 /// Boxes around particles and ghosts.
 pub const FIT_BOXES: Kernel<BoxesArgs> = Kernel::new("boxes", "fit_boxes", 256);

@@ -14,4 +14,4 @@ mod variants;
 pub use kernel::{Kernel, Primitive, RayProgram};
 pub use layout::{Float4, Layout, Ptr};
 pub use modules::{MODULES, Module, RAY_MODULES};
-pub use variants::ByForce;
+pub use variants::{ByForce, ByMotion};

@@ -33,6 +33,7 @@ pub const MODULES: &[Module] = modules![
     "integrate",
     "totals",
     "order",
+    "queries",
     "scan",
     "cells",
     "brute",

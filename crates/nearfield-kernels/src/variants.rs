@@ -1,6 +1,6 @@
 //! Kernels and programs that differ in how they compute forces.
 
-use crate::layouts::Law;
+use crate::layouts::{Integrator, Law};
 
 /// One of `P` for each way to compute forces.
 #[derive(Clone, Copy, Debug)]
@@ -30,6 +30,22 @@ impl<P: Copy> ByForce<P> {
             (false, false) if law.variable == 0 => self.uniform_lj,
             (false, false) => self.scaled_lj,
         }
+    }
+}
+
+/// One of `P` for each way to move particles.
+#[derive(Clone, Copy, Debug)]
+pub struct ByMotion<P> {
+    /// Newton's equations alone: without the code for random numbers, fewer registers do.
+    pub newton: P,
+    /// Any.
+    pub any: P,
+}
+
+impl<P: Copy> ByMotion<P> {
+    /// The fastest for an integrator.
+    pub fn choose(&self, integrator: &Integrator) -> P {
+        if integrator.langevin == 0 { self.newton } else { self.any }
     }
 }
 

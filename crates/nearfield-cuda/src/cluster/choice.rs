@@ -1,11 +1,10 @@
 //! Which variant suits a system.
 
+use crate::grid::SPARSE;
+
 /// Expected neighbours within range and skin from which pairs are found anew each time: a list of them would be read
 /// from memory as slowly, and is large.
 const DENSE: f64 = 300.0;
-
-/// Expected neighbours below which most clusters have none, so that moving the particles is the work.
-const SPARSE: f64 = 1.0;
 
 /// Most particles whose numbers entries of lists can hold, beside two bits.
 const MOST_LISTED: usize = 1 << 30;
@@ -18,7 +17,7 @@ pub enum Variant {
     Pairs,
     /// From lists of what is near each cluster, kept while the skin lasts.
     List,
-    /// The same where most lists are empty.
+    /// The same where most lists are empty, so that moving the particles is the work.
     SparseList,
 }
 

@@ -3,17 +3,17 @@
 use crate::{
     Buffer, Gpu,
     engine::{physics::Physics, state::State},
-    gpu::launch,
+    gpu::{Queue, launch},
     grid::Grid,
 };
 use bytemuck::Zeroable;
 use nearfield_core::{Report, Result};
 use nearfield_kernels::{
     Float4, Kernel, Ptr,
-    kernels::{self, CLUSTER, LISTED_FORCES, LISTED_PAIRS, SEGMENT, STEP_SPARSE},
+    kernels::{self, CLUSTER, LISTED_FORCES, LISTED_PAIRS, MOVE_LISTED, SEGMENT, STEP_SPARSE},
     layouts::{
-        self, ClusterControl, ClusterListArgs, ClusterStepArgs, ClustersMovedArgs, GatherArgs, Integrator, Law,
-        ListedArgs, Results, Segment, Status,
+        self, ClusterControl, ClusterControlArgs, ClusterListArgs, ClusterStepArgs, ClustersMovedArgs, GatherArgs,
+        Integrator, Law, ListedArgs, Results, Segment, Status,
     },
 };
 use std::sync::Arc;
@@ -25,15 +25,6 @@ const BYTES_PER_CHUNK: u64 = CHUNK * size_of::<u32>() as u64;
 
 /// Chunks of a cluster for which there is room at first, of lists that hold each pair once and of those of both sides.
 const FIRST_CHUNKS: [u64; 2] = [5, 8];
-
-/// Steps that a list is first thought to serve for.
-const FIRST_LIFE: u64 = 8;
-
-/// Steps enqueued beyond those that the list is thought to serve for: one that does nothing costs less than a wait.
-const SPARE_STEPS: u64 = 2;
-
-/// Most steps enqueued at a time.
-const MOST_STEPS: u64 = 100;
 
 /// Clusters to a warp that adds both sides of pairs, where there are many: fewer and longer blocks share caches better,
 /// and launches that are forbidden cost less.
@@ -58,10 +49,25 @@ pub(crate) struct ClusterList {
     settled: bool,
     /// Whether the list serves the present positions, where that is known without looking at them.
     known: Option<bool>,
-    /// Evaluations since the list was built.
-    age: u64,
-    /// Steps that the last list served for.
-    life: u64,
+    /// Evaluations by the list.
+    served: u64,
+}
+
+/// What came of steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Outcome {
+    /// Steps made.
+    pub made: u64,
+    /// Steps of these by the last list.
+    pub by_last: u64,
+    /// Lists that were made on the way.
+    pub lists: u64,
+    /// How many of these came after a single evaluation by the list before.
+    pub dangerous: u64,
+    /// Most steps by one list.
+    pub longest: u64,
+    /// Whether the last list serves the positions.
+    pub fresh: bool,
 }
 
 /// What steps need beside the list.
@@ -91,13 +97,17 @@ impl ClusterList {
             once: false,
             settled: false,
             known: None,
-            age: 0,
-            life: FIRST_LIFE,
+            served: 0,
         }
     }
 
     pub fn skin(&self) -> f32 {
         self.skin
+    }
+
+    /// Whether there was room for the list, as far as is known.
+    pub fn is_settled(&self) -> bool {
+        self.settled
     }
 
     /// Forgets the list.
@@ -107,13 +117,15 @@ impl ClusterList {
 
     /// Whether the list still holds every pair. Waits for the device unless the last steps were by the list.
     pub fn is_fresh(&mut self, physics: &Physics, state: &State, grid: &Grid) -> Result<bool> {
-        self.age += 1;
         let known = self.known.take();
-        if !self.valid || self.skin == 0.0 {
+        if !self.valid {
             return Ok(false);
         }
         if let Some(fresh) = known {
             return Ok(fresh);
+        }
+        if self.skin == 0.0 {
+            return Ok(false);
         }
         let arguments = ClustersMovedArgs {
             space: physics.space,
@@ -142,13 +154,13 @@ impl ClusterList {
     ) -> Result<()> {
         self.once = once;
         let first = state.len().div_ceil(CLUSTER) as u64 * FIRST_CHUNKS[usize::from(!once)];
-        self.enqueue(physics, state, grid, self.room().max(first).min(budget / BYTES_PER_CHUNK))?;
+        self.make_room(state, self.room().max(first).min(budget / BYTES_PER_CHUNK))?;
+        self.enqueue(&*self.gpu, physics, state, grid)?;
         report.list_builds += 1;
-        if self.age == 1 && self.skin > 0.0 && report.list_builds > 1 {
+        if self.served == 1 && self.skin > 0.0 && report.list_builds > 1 {
             report.dangerous_builds += 1;
         }
-        self.life = self.age.max(1);
-        self.age = 0;
+        self.served = 0;
         (self.valid, self.settled) = (true, false);
         Ok(())
     }
@@ -161,12 +173,14 @@ impl ClusterList {
             if needed * BYTES_PER_CHUNK > budget {
                 self.entry.resize(0)?;
                 self.valid = false;
+                self.known = None;
                 return Ok(false);
             }
             self.settled = needed <= self.room();
             if !self.settled {
                 // Lists of other moments may be longer.
-                self.enqueue(physics, state, grid, (needed + needed / 8).min(budget / BYTES_PER_CHUNK))?;
+                self.make_room(state, (needed + needed / 8).min(budget / BYTES_PER_CHUNK))?;
+                self.enqueue(&*self.gpu, physics, state, grid)?;
             }
         }
         Ok(true)
@@ -177,13 +191,16 @@ impl ClusterList {
         self.entry.len() as u64 / CHUNK
     }
 
-    /// Enqueues the listing with room for so many chunks.
-    fn enqueue(&mut self, physics: &Physics, state: &State, grid: &Grid, room: u64) -> Result<()> {
+    fn make_room(&mut self, state: &State, chunks: u64) -> Result<()> {
+        self.entry.resize((chunks * CHUNK) as usize)?;
+        self.segment.resize(state.len().div_ceil(CLUSTER) + chunks as usize / SEGMENT)?;
+        self.control.resize(1)
+    }
+
+    /// Enqueues the listing in the room that there is; see [`ClusterList::build`].
+    pub fn enqueue(&self, queue: &dyn Queue, physics: &Physics, state: &State, grid: &Grid) -> Result<()> {
         let n_clusters = state.len().div_ceil(CLUSTER);
-        self.entry.resize((room * CHUNK) as usize)?;
-        self.segment.resize(n_clusters + room as usize / SEGMENT)?;
-        let nothing_yet = ClusterControl { rebuild_at: u64::MAX, done: u64::MAX, ..ClusterControl::zeroed() };
-        self.control.upload(&[nothing_yet])?;
+        let control = ClusterControlArgs { control: self.control.ptr(), ..Default::default() };
         let arguments = ClusterListArgs {
             law: Law { cutoff: physics.law.cutoff + self.skin, ..physics.law },
             space: physics.space,
@@ -193,7 +210,7 @@ impl ClusterList {
             control: self.control.ptr(),
             n: state.len() as u32,
             n_clusters: n_clusters as u32,
-            capacity: room as u32,
+            capacity: self.room() as u32,
             segment_capacity: self.segment.len() as u32,
             slack: grid.slack(),
             margin: 0.5 * self.skin + physics.slack,
@@ -201,7 +218,10 @@ impl ClusterList {
             unused: 0,
         };
         // SAFETY: positions are n, sorted by the grid's cells; segments and entries have room for what is said.
-        unsafe { launch(&*self.gpu, kernels::LIST_CLUSTERS, 32 * n_clusters as u64, &arguments) }
+        unsafe {
+            launch(queue, kernels::BEGIN_LIST, 1, &control)?;
+            launch(queue, kernels::LIST_CLUSTERS, 32 * n_clusters as u64, &arguments)
+        }
     }
 
     /// Whether forces are added to: they must be zero before.
@@ -210,10 +230,18 @@ impl ClusterList {
     }
 
     /// Enqueues the forces on all particles. Exact ones take lists of both sides.
-    pub fn forces(&self, physics: &Physics, state: &State, results: Results, exact: bool, energy: bool) -> Result<()> {
-        let arguments = self.listed(physics, state, results, 0);
+    pub fn forces(
+        &mut self,
+        physics: &Physics,
+        state: &State,
+        results: Results,
+        exact: bool,
+        energy: bool,
+    ) -> Result<()> {
+        self.served += 1;
+        let arguments = self.listed(physics, state, results);
         if self.once {
-            return self.add_pairs(LISTED_PAIRS.choose(&physics.law, exact, energy), state.len(), &arguments);
+            return add_pairs(&*self.gpu, LISTED_PAIRS.choose(&physics.law, exact, energy), &arguments);
         }
         let kernel = LISTED_FORCES.choose(&physics.law, exact, energy);
         let n_clusters = state.len().div_ceil(CLUSTER) as u64;
@@ -221,66 +249,78 @@ impl ClusterList {
         unsafe { launch(&*self.gpu, kernel, 32 * n_clusters, &arguments) }
     }
 
-    /// Makes steps from forces at `step` on, at most `most`, at positions that the list serves; waits for the device to
-    /// know how many there were. None are made where there was no room for the list: it is to be settled first.
-    pub fn steps(&mut self, query: StepQuery, grid: &Grid, step: u64, most: u64) -> Result<u64> {
-        let StepQuery { physics, state, spare, integrator, status } = query;
-        let n = state.len();
-        spare.resize(n)?;
+    /// Enqueues that steps begin at `step`, whose positions the list serves, and end before `end`.
+    pub fn begin_steps(&self, query: &mut StepQuery, step: u64, end: u64) -> Result<()> {
+        query.spare.resize(query.state.len())?;
         if self.once {
-            spare.zero()?;
+            query.spare.zero()?;
         }
-        let asked = (self.life.saturating_sub(self.age) + SPARE_STEPS).clamp(1, MOST_STEPS.min(most));
-        for step in step..step + asked {
-            let force = if self.once { spare.ptr() } else { Ptr::NULL };
-            let arguments = ClusterStepArgs {
-                listed: self.listed(physics, state, Results { force, ..Results::default() }, step),
-                integrator,
-                particles: state.particles(),
-                next: if self.once { state.moving.position.ptr() } else { spare.ptr() },
-                reference: grid.slots(),
-                status,
-                limit2: self.limit * self.limit,
-                unused: 0,
-            };
-            if self.once {
-                self.add_pairs(LISTED_PAIRS.choose(&physics.law, false, false), n, &arguments.listed)?;
-                // SAFETY: all arrays of particles have n elements.
-                unsafe { launch(&*self.gpu, kernels::MOVE_LISTED, n as u64, &arguments)? };
-            } else {
-                // SAFETY: as above.
-                unsafe { launch(&*self.gpu, STEP_SPARSE.choose(&physics.law, false, false), n as u64, &arguments)? };
-                std::mem::swap(&mut state.moving.position, spare);
-            }
-        }
-        let ClusterControl { rebuild_at, done, chunks, .. } = self.control()?;
-        self.settled = u64::from(chunks) <= self.room();
-        // Without particles nothing is done, and nothing is to do.
-        let made = match (n, self.settled) {
-            (0, _) => asked,
-            (_, true) => done - step + 1,
-            (_, false) => 0,
+        let arguments = ClusterControlArgs { control: self.control.ptr(), step, end };
+        // SAFETY: the list has a control block.
+        unsafe { launch(&*self.gpu, kernels::BEGIN_STEPS, 1, &arguments) }
+    }
+
+    /// Enqueues so many steps from forces at the present positions on, one more where that is odd, of which those are done
+    /// that the list serves for and that are not beyond the end.
+    pub fn enqueue_steps(&self, queue: &dyn Queue, query: &StepQuery, grid: &Grid, steps: u64) -> Result<()> {
+        let StepQuery { physics, state, spare, integrator, status } = query;
+        let n = state.len() as u64;
+        let force = if self.once { spare.ptr() } else { Ptr::NULL };
+        let listed = ListedArgs {
+            control: self.control.ptr(),
+            ..self.listed(physics, state, Results { force, ..Results::default() })
         };
-        if !self.once && (asked - made) % 2 == 1 {
-            std::mem::swap(&mut state.moving.position, spare);
+        let position = state.moving.position.ptr();
+        let mut arguments = ClusterStepArgs {
+            listed,
+            integrator: *integrator,
+            particles: state.particles(),
+            next: position,
+            reference: grid.slots(),
+            status: *status,
+            limit2: self.limit * self.limit,
+            unused: 0,
+        };
+        // Positions that go to and fro are back after two steps.
+        for index in 0..steps.next_multiple_of(2) as u32 {
+            arguments.listed.index = index;
+            if self.once {
+                add_pairs(queue, LISTED_PAIRS.choose(&physics.law, false, false), &arguments.listed)?;
+                // SAFETY: all arrays of particles have n elements.
+                unsafe { launch(queue, MOVE_LISTED.choose(integrator), n, &arguments)? };
+                continue;
+            }
+            let (from, to) = if index % 2 == 0 { (position, spare.ptr()) } else { (spare.ptr(), position) };
+            arguments.listed.gather.grid.slot = from;
+            arguments.particles.position = from;
+            arguments.next = to;
+            let kernel = STEP_SPARSE.choose(integrator).choose(&physics.law, false, false);
+            // SAFETY: as above.
+            unsafe { launch(queue, kernel, n, &arguments)? };
         }
-        if made == 0 {
-            return Ok(0);
-        }
-        self.known = Some(rebuild_at > step + made);
-        // The first evaluation was booked when freshness was asked for.
-        self.age += made - 1;
-        Ok(made)
+        Ok(())
     }
 
-    /// Enqueues the addition of forces to zeros, from a list that holds each pair once, unless the list does not serve.
-    fn add_pairs(&self, kernel: Kernel<ListedArgs>, n: usize, arguments: &ListedArgs) -> Result<()> {
-        let clusters = n.div_ceil(CLUSTER);
-        // SAFETY: particles and results are n, in the order that the list was made in.
-        unsafe { launch(&*self.gpu, kernel, 32 * clusters.div_ceil(per_warp(n)) as u64, arguments) }
+    /// Waits for the steps that were begun at `step`.
+    pub fn finish_steps(&mut self, step: u64) -> Result<Outcome> {
+        let control = self.control()?;
+        self.settled = u64::from(control.chunks) <= self.room();
+        let (made, by_last) = (control.next - step, control.next - control.first);
+        self.served = if control.lists > 0 { by_last } else { self.served + by_last };
+        // A list for which there was no room is of the present positions.
+        let fresh = !self.settled || control.rebuild_at > control.next;
+        self.known = Some(fresh);
+        Ok(Outcome {
+            made,
+            by_last,
+            lists: control.lists.into(),
+            dangerous: if self.skin > 0.0 { control.dangerous.into() } else { 0 },
+            longest: by_last.max(control.longest.into()),
+            fresh,
+        })
     }
 
-    fn listed(&self, physics: &Physics, state: &State, results: Results, step: u64) -> ListedArgs {
+    fn listed(&self, physics: &Physics, state: &State, results: Results) -> ListedArgs {
         let grid = layouts::Grid { n_classes: 1, slot: state.moving.position.ptr(), ..Default::default() };
         ListedArgs {
             gather: GatherArgs {
@@ -294,10 +334,9 @@ impl ClusterList {
             },
             segment: self.segment.ptr(),
             entry: self.entry.ptr(),
-            control: self.control.ptr(),
-            step,
+            control: Ptr::NULL,
+            index: 0,
             clusters_per_warp: per_warp(state.len()) as u32,
-            unused: 0,
         }
     }
 
@@ -309,6 +348,14 @@ impl ClusterList {
     pub fn bytes(&self) -> u64 {
         self.segment.bytes() + self.entry.bytes() + self.control.bytes()
     }
+}
+
+/// Enqueues the addition of forces to zeros, from a list that holds each pair once.
+fn add_pairs(queue: &dyn Queue, kernel: Kernel<ListedArgs>, arguments: &ListedArgs) -> Result<()> {
+    let clusters = (arguments.gather.n as usize).div_ceil(CLUSTER);
+    let warps = clusters.div_ceil(arguments.clusters_per_warp as usize);
+    // SAFETY: particles and results are n, in the order that the list was made in.
+    unsafe { launch(queue, kernel, 32 * warps as u64, arguments) }
 }
 
 /// Clusters that a warp takes of `n` particles.

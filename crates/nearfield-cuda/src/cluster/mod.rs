@@ -3,6 +3,8 @@
 
 mod choice;
 mod list;
+mod pace;
+mod steps;
 
 pub use choice::Variant;
 pub(crate) use list::StepQuery;
@@ -15,6 +17,7 @@ use crate::{
 use list::ClusterList;
 use nearfield_core::{Plan, Report, Result};
 use nearfield_kernels::{Float4, layouts::Results};
+use pace::Pace;
 use std::sync::Arc;
 
 /// Cells, and lists where they pay.
@@ -23,6 +26,7 @@ pub struct Clusters {
     grid: Grid,
     variant: Variant,
     list: ClusterList,
+    pace: Pace,
     deterministic: bool,
     memory_budget: u64,
     /// Whether the list has proved larger than the budget: pairs are found in cells from then on.
@@ -37,6 +41,7 @@ impl Clusters {
             grid: Grid::new(gpu),
             variant: Variant::Pairs,
             list: ClusterList::new(gpu, plan.skin.or_usual(), physics),
+            pace: Pace::new(),
             deterministic: plan.deterministic,
             memory_budget: plan.memory_budget,
             over_budget: false,
@@ -71,12 +76,12 @@ impl Clusters {
     /// Sorts the particles by cell and lists what is near them, or only sorts them.
     pub(crate) fn build(&mut self, physics: &Physics, state: &mut State, report: &mut Report) -> Result<()> {
         // SAFETY: the state's positions are n.
-        unsafe { self.grid.build(state.moving.position.ptr(), state.len(), physics.law.variable != 0)? };
+        unsafe { self.grid.build(&*self.gpu, state.moving.position.ptr(), state.len(), physics.law.variable != 0)? };
         if !self.variant.uses_list() {
             return Ok(());
         }
         // Nothing needs the forces any more: they are of positions before.
-        state.permute(self.grid.order().ptr(), &mut Buffer::new(&self.gpu, "forces"))?;
+        state.permute(&*self.gpu, self.grid.order().ptr(), &mut Buffer::new(&self.gpu, "forces"))?;
         let once = self.variant == Variant::List && !self.deterministic;
         self.list.build(physics, state, &self.grid, once, self.memory_budget, report)
     }
@@ -91,7 +96,7 @@ impl Clusters {
         self.over_budget = true;
         self.variant = Variant::Pairs;
         // SAFETY: the state's positions are n. The particles were given new places after the cells were built.
-        unsafe { self.grid.build(state.moving.position.ptr(), state.len(), false) }
+        unsafe { self.grid.build(&*self.gpu, state.moving.position.ptr(), state.len(), false) }
     }
 
     /// Whether forces are added to: results must be zero before, and order-independent sums be finished after.
@@ -101,7 +106,7 @@ impl Clusters {
 
     /// Enqueues the forces at positions that it was built for or [`Clusters::is_fresh`] of.
     pub(crate) fn forces(
-        &self,
+        &mut self,
         physics: &Physics,
         state: &State,
         results: Results,
@@ -125,14 +130,9 @@ impl Clusters {
         unsafe { grid::forces(&*self.gpu, self.candidates(), &query) }
     }
 
-    /// The list, for steps by it.
-    pub(crate) fn list_and_grid(&mut self) -> (&mut ClusterList, &Grid) {
-        (&mut self.list, &self.grid)
-    }
-
     /// The cells, where there is no list.
-    pub(crate) fn cells(&self) -> Option<&Grid> {
-        (!self.variant.uses_list()).then_some(&self.grid)
+    pub(crate) fn cells(&mut self) -> Option<&mut Grid> {
+        (!self.variant.uses_list()).then_some(&mut self.grid)
     }
 
     fn pairs(&self) -> Pairs {
@@ -150,8 +150,8 @@ impl Clusters {
             return Ok(());
         }
         // SAFETY: the state's positions are n.
-        unsafe { self.grid.build(state.moving.position.ptr(), state.len(), physics.law.variable != 0)? };
-        state.permute(self.grid.order().ptr(), force)
+        unsafe { self.grid.build(&*self.gpu, state.moving.position.ptr(), state.len(), physics.law.variable != 0)? };
+        state.permute(&*self.gpu, self.grid.order().ptr(), force)
     }
 
     /// Bytes held on the device.

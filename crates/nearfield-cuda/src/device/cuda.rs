@@ -3,9 +3,14 @@
 use super::{
     Unavailable,
     find::{self, describe},
+    graphs::{Graph, Graphs},
     optix::Optix,
 };
-use crate::gpu::{Gpu, Launch, Mark, Memory, RayTracing};
+use crate::{
+    Sequence,
+    gpu::{Gpu, Launch, Mark, Memory, Queue, RayTracing},
+    sequence::Part,
+};
 use cudarc::{
     driver::{CudaContext, CudaEvent, CudaFunction, CudaModule, CudaStream, DriverError, result, sys},
     nvrtc::Ptx,
@@ -24,6 +29,7 @@ pub struct CudaDevice {
     context: Arc<CudaContext>,
     stream: Arc<CudaStream>,
     loaded: Mutex<Loaded>,
+    graphs: Mutex<Graphs>,
     /// OptiX, or why there is none, once somebody has asked.
     tracing: OnceLock<std::result::Result<Optix, String>>,
 }
@@ -51,7 +57,7 @@ impl CudaDevice {
     }
 
     fn with_stream(context: Arc<CudaContext>, stream: Arc<CudaStream>) -> Self {
-        Self { context, stream, loaded: Mutex::default(), tracing: OnceLock::new() }
+        Self { context, stream, loaded: Mutex::default(), graphs: Mutex::default(), tracing: OnceLock::new() }
     }
 
     /// Makes the context the calling thread's: engines may move between threads.
@@ -70,6 +76,11 @@ impl CudaDevice {
     /// `NEARFIELD_OPTIX_VALIDATION` was 1 when it was first used, nothing otherwise.
     pub fn take_ray_tracing_messages(&self) -> Vec<String> {
         self.tracing.get().and_then(|tracing| tracing.as_ref().ok()).map(Optix::take_messages).unwrap_or_default()
+    }
+
+    /// Number of sequences that are kept as CUDA graphs now.
+    pub fn n_graphs(&self) -> usize {
+        self.graphs.lock().unwrap_or_else(PoisonError::into_inner).count()
     }
 
     fn kernel(&self, module: &'static str, name: &'static str) -> Result<CudaFunction> {
@@ -98,6 +109,25 @@ impl CudaDevice {
 /// Turns an error of the driver into the engine's.
 fn failed(doing: &'static str) -> impl Fn(DriverError) -> Error {
     move |error| Error::Device(format!("{doing}: {}", describe(error)))
+}
+
+impl Queue for CudaDevice {
+    unsafe fn launch(&self, launch: Launch) -> Result<()> {
+        let stream = self.bind()?;
+        let kernel = self.kernel(launch.module, launch.name)?;
+        let mut arguments = [launch.arguments.as_ptr().cast_mut().cast::<c_void>()];
+        let (grid, block) = ((launch.blocks, 1, 1), (launch.threads, 1, 1));
+        // SAFETY: a kernel takes one structure, which the driver copies during the call; the caller vouches for the
+        // addresses in it.
+        unsafe { result::launch_kernel(kernel.cu_function(), grid, block, 0, stream, &mut arguments) }
+            .map_err(|error| Error::Device(format!("launching {}: {}", launch.name, describe(error))))
+    }
+
+    unsafe fn fill(&self, to: u64, value: u8, bytes: usize) -> Result<()> {
+        let stream = self.bind()?;
+        // SAFETY: the caller vouches for the address.
+        unsafe { result::memset_d8_async(to, value, bytes, stream) }.map_err(failed("filling memory"))
+    }
 }
 
 impl Gpu for CudaDevice {
@@ -155,27 +185,24 @@ impl Gpu for CudaDevice {
         self.synchronize()
     }
 
-    unsafe fn fill(&self, to: u64, value: u8, bytes: usize) -> Result<()> {
-        let stream = self.bind()?;
-        // SAFETY: the caller vouches for the address.
-        unsafe { result::memset_d8_async(to, value, bytes, stream) }.map_err(failed("filling memory"))
-    }
-
     unsafe fn copy(&self, from: u64, to: u64, bytes: usize) -> Result<()> {
         let stream = self.bind()?;
         // SAFETY: the caller vouches for the addresses.
         unsafe { result::memcpy_dtod_async(to, from, bytes, stream) }.map_err(failed("copying on the device"))
     }
 
-    unsafe fn launch(&self, launch: Launch) -> Result<()> {
+    unsafe fn run(&self, sequence: &Sequence) -> Result<()> {
         let stream = self.bind()?;
-        let kernel = self.kernel(launch.module, launch.name)?;
-        let mut arguments = [launch.arguments.as_ptr().cast_mut().cast::<c_void>()];
-        let (grid, block) = ((launch.blocks, 1, 1), (launch.threads, 1, 1));
-        // SAFETY: a kernel takes one structure, which the driver copies during the call; the caller vouches for the
-        // addresses in it.
-        unsafe { result::launch_kernel(kernel.cu_function(), grid, block, 0, stream, &mut arguments) }
-            .map_err(|error| Error::Device(format!("launching {}: {}", launch.name, describe(error))))
+        let mut graphs = self.graphs.lock().unwrap_or_else(PoisonError::into_inner);
+        let kernel = |module, name| self.kernel(module, name).ok().map(|kernel| kernel.cu_function());
+        // SAFETY: the caller's promise. Where the driver refuses a graph, the parts are launched one by one.
+        let make = |parts: &[Part]| Ok(unsafe { Graph::new(parts, &self.context, kernel) }.ok());
+        match graphs.of(sequence, make, || self.synchronize())? {
+            // SAFETY: the caller's promise.
+            Some(graph) => unsafe { graph.launch(stream) }.map_err(failed("launching a graph")),
+            // SAFETY: as above.
+            None => unsafe { sequence.enqueue(self) },
+        }
     }
 
     fn mark(&self) -> Result<Box<dyn Mark>> {

@@ -3,6 +3,7 @@
 mod cuda;
 mod error;
 mod find;
+mod graphs;
 mod optix;
 mod structure;
 

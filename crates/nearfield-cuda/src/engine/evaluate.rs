@@ -8,13 +8,16 @@ use super::{
 };
 use crate::{
     cluster::StepQuery,
-    grid::{self, CellStep, Grid},
+    grid::{CellSteps, Grid},
     tracing::Step,
 };
 use nearfield_core::{
     Order, Quantities, Result, StepCost,
     maintenance::{Action, Motion},
 };
+
+/// Most steps by cells that are enqueued together.
+const CELL_STEPS: u64 = 20;
 
 impl Loaded {
     /// Enqueues forces, and what else is asked for, at the present positions, which belong to `step`.
@@ -52,45 +55,47 @@ impl Loaded {
         self.account(1)
     }
 
-    /// Forces at the positions of `step`, and steps by them: as many as one list of clusters serves for and `before`
-    /// allows, one by cells where most particles have no neighbours, else none. Gives the step whose positions the
-    /// particles are at then.
+    /// Forces at the positions of `step`, and steps by them, none beyond `before`: by lists of clusters, by cells where
+    /// most particles have no neighbours, else none. Gives the step whose positions the particles are at then.
     pub fn evaluate_and_step(&mut self, integrator: &Integrator, step: u64, before: u64) -> Result<u64> {
         self.prepare(step)?;
-        loop {
-            if self.step_by_cells(integrator, step)? {
-                return Ok(step + 1);
-            }
-            let Self { physics, state, structure, next_position, totalizer, report, .. } = self;
-            let Some(clusters) = structure.clusters_mut().filter(|clusters| clusters.cells().is_none()) else {
-                self.query(Quantities::FORCES)?;
-                return Ok(step);
-            };
-            let (list, grid) = clusters.list_and_grid();
-            let (integrator, status) = (integrator.layout(), totalizer.status().ptr());
+        let replan = self.planned_at.map_or(step, |then| then + self.plan_interval);
+        let made = self.steps_by_cells(integrator, step, before, replan)?;
+        if made > 0 {
+            return Ok(step + made);
+        }
+        let Self { physics, state, structure, next_position, totalizer, report, .. } = self;
+        let (integrator, status) = (integrator.layout(), totalizer.status().ptr());
+        if let Some(clusters) = structure.clusters_mut().filter(|clusters| clusters.variant().uses_list()) {
             let query = StepQuery { physics, state, spare: next_position, integrator, status };
-            let made = list.steps(query, grid, step, before - step)?;
+            let made = clusters.steps(query, step..before, replan, report)?;
             if made > 0 {
                 self.account(made)?;
                 return Ok(step + made);
             }
-            clusters.settle(physics, state, report)?;
         }
+        self.query(Quantities::FORCES)?;
+        Ok(step)
     }
 
-    /// A step by sparse cells of the present positions, where there are any.
-    fn step_by_cells(&mut self, integrator: &Integrator, step: u64) -> Result<bool> {
-        let Some(grid) = self.structure.sparse_cells() else { return Ok(false) };
-        let step = CellStep {
+    /// Steps by sparse cells, which are there for the first, where there are any: until particles are to be sorted or
+    /// cells to be chosen anew.
+    fn steps_by_cells(&mut self, integrator: &Integrator, step: u64, before: u64, replan: u64) -> Result<u64> {
+        let Self { physics, state, structure, totalizer, cell_stepper, .. } = self;
+        let Some(grid) = structure.sparse_cells() else { return Ok(0) };
+        let reorder = self.sorted_at.map_or(step, |then| then + order::INTERVAL);
+        let made = before.min(replan).min(reorder).saturating_sub(step).clamp(1, CELL_STEPS);
+        let steps = CellSteps {
+            law: physics.law,
             integrator: integrator.layout(),
-            particles: self.state.particles(),
-            status: self.totalizer.status().ptr(),
-            number: step,
+            particles: state.particles(),
+            status: totalizer.status().ptr(),
         };
         // SAFETY: the cells are of the present positions, and arrays of particles have n elements each.
-        unsafe { grid::step(&*self.gpu, grid, &self.physics.law, &step)? };
-        self.account(1)?;
-        Ok(true)
+        unsafe { cell_stepper.enqueue(grid, &steps, step, made as u32)? };
+        self.report.builds += made - 1;
+        self.account(made)?;
+        Ok(made)
     }
 
     /// Books evaluations whose query has been enqueued.
@@ -161,14 +166,14 @@ impl Loaded {
             Order::Morton => {
                 let mut morton = MortonOrder::new(gpu);
                 let order = morton.sort(state, &surveyor.survey(state)?.bounds)?.ptr();
-                state.permute(order, &mut self.results.force)
+                state.permute(&**gpu, order, &mut self.results.force)
             }
             Order::Cell => {
                 let mut grid = Grid::new(gpu);
                 grid.plan(&physics.survey(&surveyor.survey(state)?));
                 // SAFETY: the state's positions are n.
-                unsafe { grid.build(state.moving.position.ptr(), state.len(), physics.law.variable != 0)? };
-                state.permute(grid.order().ptr(), &mut self.results.force)
+                unsafe { grid.build(&**gpu, state.moving.position.ptr(), state.len(), physics.law.variable != 0)? };
+                state.permute(&**gpu, grid.order().ptr(), &mut self.results.force)
             }
         }
     }

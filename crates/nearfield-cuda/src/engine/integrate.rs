@@ -4,7 +4,7 @@ use super::{physics::Physics, state::State, totals::Totalizer};
 use crate::{Buffer, Gpu, gpu::launch};
 use nearfield_core::{Dynamics, Ensemble, ParticleType, Result, dynamics::rescale_draws};
 use nearfield_kernels::{
-    Float4, kernels,
+    Float4, Ptr, kernels,
     layouts::{self, IntegrateArgs, RescaleArgs},
 };
 use std::sync::Arc;
@@ -13,9 +13,37 @@ use std::sync::Arc;
 pub(crate) struct Integrator {
     gpu: Arc<dyn Gpu>,
     layout: layouts::Integrator,
-    _half_kick: Buffer<f32>,
-    _noise: Buffer<f32>,
     rescaling: Option<Rescaling>,
+}
+
+/// What [`layouts::Integrator`] points to, by type of particle; kept, so that steps of one call are launched as those of
+/// another.
+pub(crate) struct Constants {
+    half_kick: Constant,
+    noise: Constant,
+}
+
+struct Constant {
+    device: Buffer<f32>,
+    host: Vec<f32>,
+}
+
+impl Constants {
+    pub fn new(gpu: &Arc<dyn Gpu>) -> Self {
+        let constant = || Constant { device: Buffer::new(gpu, "integrator constants"), host: Vec::new() };
+        Self { half_kick: constant(), noise: constant() }
+    }
+}
+
+impl Constant {
+    /// Address of these values; they are copied where they are not those of before.
+    fn set(&mut self, values: Vec<f32>) -> Result<Ptr<f32>> {
+        if self.host != values {
+            self.device.upload(&values)?;
+            self.host = values;
+        }
+        Ok(self.device.ptr())
+    }
 }
 
 /// Which halves of steps a launch does.
@@ -39,23 +67,22 @@ struct Rescaling {
 }
 
 impl Integrator {
+    /// For `steps` of `n` particles; `constants` must not be changed while it is used.
     pub fn new(
         gpu: &Arc<dyn Gpu>,
+        constants: &mut Constants,
         physics: &Physics,
         dynamics: &Dynamics,
         n: usize,
         steps: std::ops::Range<u64>,
     ) -> Result<Self> {
         let (types, dt) = (&physics.interaction.types, dynamics.dt);
-        let mut half_kick = Buffer::new(gpu, "integrator constants");
-        let mut noise = Buffer::new(gpu, "integrator constants");
-        half_kick.upload(&types.iter().map(|t| 0.5 * dt / t.mass).collect::<Vec<_>>())?;
         let mut layout = layouts::Integrator {
             space: physics.space,
             dt,
             speed_limit: if dynamics.max_displacement > 0.0 { dynamics.max_displacement / dt } else { f32::INFINITY },
             seed: [dynamics.seed as u32, (dynamics.seed >> 32) as u32],
-            half_kick: half_kick.ptr(),
+            half_kick: constants.half_kick.set(types.iter().map(|t| 0.5 * dt / t.mass).collect())?,
             ..layouts::Integrator::default()
         };
         let mut rescaling = None;
@@ -65,10 +92,9 @@ impl Integrator {
                 let damping = (-friction * f64::from(dt)).exp();
                 let strength =
                     |t: &ParticleType| ((1.0 - damping * damping) * temperature / f64::from(t.mass)).sqrt() as f32;
-                noise.upload(&types.iter().map(strength).collect::<Vec<_>>())?;
                 layout.langevin = 1;
                 layout.damping = damping as f32;
-                layout.noise = noise.ptr();
+                layout.noise = constants.noise.set(types.iter().map(strength).collect())?;
             }
             Ensemble::Rescale { temperature, relaxation } => {
                 let (normals, chi_squareds): (Vec<f64>, Vec<f64>) =
@@ -81,7 +107,7 @@ impl Integrator {
                 rescaling = Some(Rescaling { normal, chi_squared, temperature, decay });
             }
         }
-        Ok(Self { gpu: gpu.clone(), layout, _half_kick: half_kick, _noise: noise, rescaling })
+        Ok(Self { gpu: gpu.clone(), layout, rescaling })
     }
 
     /// For kernels that move particles themselves.

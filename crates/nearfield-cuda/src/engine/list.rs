@@ -7,7 +7,7 @@ use crate::{
     tracing::{RowNumbers, RowQuery, Scene},
 };
 use nearfield_core::{
-    ListKind, ListRequest, Method, NeighborList, Particles, Plan, Result, maintenance::Action, predicate,
+    ListKind, ListRequest, Method, NeighborList, Particles, Plan, Result, SimBox, maintenance::Action, predicate,
 };
 
 /// What lists need beside what forces do.
@@ -62,25 +62,10 @@ impl Loaded {
         if request.distances {
             self.state.copy_to(&mut particles)?;
         }
+        let sim_box = self.physics.sim_box;
         let list = self.list_on_device(request)?;
-        let (offsets, mut indices, mut images) =
-            (list.offset.download()?, list.index.download()?, list.image.download()?);
-        if request.sorted {
-            sort_rows(&offsets, &mut indices, &mut images);
-        }
-        let shifts: Vec<[i8; 3]> = images.iter().map(|&code| image_of(code)).collect();
-        let row_range = |i: usize| offsets[i] as usize..offsets[i + 1] as usize;
-        // By the one definition, on the host: the same bits as everywhere.
-        let distance = |i: usize, entry: usize| {
-            let (xi, xj) = (particles.position.get(i), particles.position.get(indices[entry] as usize));
-            let shift = self.physics.sim_box.shift(shifts[entry]);
-            predicate::squared_length(predicate::displacement(xi, xj, shift)).sqrt()
-        };
-        let distances = request.distances.then(|| {
-            (0..particles.len()).flat_map(|i| row_range(i).map(move |entry| (i, entry))).map(|(i, e)| distance(i, e))
-        });
-        let distances = distances.map(Iterator::collect);
-        Ok(NeighborList { kind: request.kind, offsets, indices, shifts: request.shifts.then_some(shifts), distances })
+        let ends = |i: usize, j: u32| (particles.position.get(i), particles.position.get(j as usize));
+        download(list, request, &sim_box, ends)
     }
 
     /// Brings the lister's structure to the present positions and uses it.
@@ -106,6 +91,29 @@ impl Loaded {
         }
         body(lister, &state.id, &scene)
     }
+}
+
+/// Copies a list to the host; `ends` gives the positions of a row and of a neighbour in it.
+pub(super) fn download(
+    list: &DeviceList,
+    request: ListRequest,
+    sim_box: &SimBox,
+    ends: impl Fn(usize, u32) -> ([f32; 3], [f32; 3]),
+) -> Result<NeighborList> {
+    let (offsets, mut indices, mut images) = (list.offset.download()?, list.index.download()?, list.image.download()?);
+    if request.sorted {
+        sort_rows(&offsets, &mut indices, &mut images);
+    }
+    let shifts: Vec<[i8; 3]> = images.iter().map(|&code| image_of(code)).collect();
+    let row_range = |i: usize| offsets[i] as usize..offsets[i + 1] as usize;
+    // By the one definition, on the host: the same bits as everywhere.
+    let distance = |i: usize, entry: usize| {
+        let (xi, xj) = ends(i, indices[entry]);
+        predicate::squared_length(predicate::displacement(xi, xj, sim_box.shift(shifts[entry]))).sqrt()
+    };
+    let entries = || (0..offsets.len() - 1).flat_map(|i| row_range(i).map(move |entry| (i, entry)));
+    let distances = request.distances.then(|| entries().map(|(i, entry)| distance(i, entry)).collect());
+    Ok(NeighborList { kind: request.kind, offsets, indices, shifts: request.shifts.then_some(shifts), distances })
 }
 
 fn all<'a>(scene: &Scene) -> Candidates<'a> {

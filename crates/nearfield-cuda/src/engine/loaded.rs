@@ -1,10 +1,10 @@
 //! A loaded system.
 
 use super::{
-    list::Lister, motion::Reference, order, physics::Physics, results::Results, state::State, structure::Structure,
-    survey::Surveyor, timeline::Timeline, totals::Totalizer,
+    integrate::Constants, list::Lister, motion::Reference, order, physics::Physics, query::Answers, results::Results,
+    state::State, structure::Structure, survey::Surveyor, timeline::Timeline, totals::Totalizer,
 };
-use crate::{Buffer, Gpu};
+use crate::{Buffer, Gpu, grid::CellStepper};
 use nearfield_core::{Plan, Report, Result, System, engine::MemoryOrder, maintenance::Policy};
 use nearfield_kernels::Float4;
 use std::sync::Arc;
@@ -18,6 +18,8 @@ pub(crate) struct Loaded {
     pub results: Results,
     /// Where positions go that move while others are still looked at.
     pub next_position: Buffer<Float4>,
+    pub constants: Constants,
+    pub cell_stepper: CellStepper,
     pub totalizer: Totalizer,
     pub structure: Structure,
     pub policy: Box<dyn Policy>,
@@ -26,6 +28,8 @@ pub(crate) struct Loaded {
     pub surveyor: Surveyor,
     /// Made when a list is first asked for.
     pub lister: Option<Lister>,
+    /// Made when points are first queried.
+    pub answers: Option<Answers>,
     pub timeline: Timeline,
     pub report: Report,
     pub record_history: bool,
@@ -50,12 +54,15 @@ impl Loaded {
             state: State::new(gpu, system)?,
             results: Results::new(gpu),
             next_position: Buffer::new(gpu, "next positions"),
+            constants: Constants::new(gpu),
+            cell_stepper: CellStepper::new(gpu),
             totalizer: Totalizer::new(gpu, &system.interaction)?,
             structure: Structure::new(gpu, plan, &physics)?,
             policy: plan.maintenance.policy(),
             reference: Reference::new(gpu),
             surveyor: Surveyor::new(gpu),
             lister: None,
+            answers: None,
             timeline: Timeline::default(),
             report: Report::default(),
             record_history: false,
@@ -73,7 +80,7 @@ impl Loaded {
         // Places now are input indices, since the system was just loaded.
         let mut permutation = Buffer::new(&self.gpu, "a memory order");
         permutation.upload(&order.ids)?;
-        self.state.permute(permutation.ptr(), &mut self.results.force)?;
+        self.state.permute(&*self.gpu, permutation.ptr(), &mut self.results.force)?;
         self.sorted_at = order.sorted_at;
         Ok(())
     }

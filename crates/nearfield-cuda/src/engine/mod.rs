@@ -8,6 +8,7 @@ mod loaded;
 pub(crate) mod motion;
 mod order;
 pub(crate) mod physics;
+mod query;
 mod results;
 mod run;
 pub(crate) mod state;
@@ -19,8 +20,8 @@ mod totals;
 use crate::{Buffer, CudaDevice, DeviceList, Gpu, Unavailable, Variant};
 use loaded::Loaded;
 use nearfield_core::{
-    Dynamics, Engine, Error, ListRequest, NeighborList, Particles, PerParticle, Plan, Quantities, Report, Result,
-    System, Totals, engine::MemoryOrder, maintenance::EnergyCounter,
+    Dynamics, Engine, Error, ListRequest, NeighborList, Particles, PerParticle, Plan, Quantities, Radii, Report,
+    Result, System, Totals, engine::MemoryOrder, maintenance::EnergyCounter,
 };
 use std::sync::Arc;
 
@@ -60,6 +61,52 @@ impl CudaEngine {
     /// As [`Engine::neighbor_list`].
     pub fn count_on_device(&mut self) -> Result<&Buffer<u32>> {
         self.loaded()?.count_on_device()
+    }
+
+    /// For each of other points, the particles within `radii` of it where they are now: a full list with a row per query, as
+    /// the facade's `NeighborSearch::query` gives it. The radii of the particles mean nothing here.
+    ///
+    /// # Errors
+    /// [`Error::NotLoaded`]; a coordinate that is not finite or outside walls, a radius that is not positive or beyond half
+    /// a periodic length (named by the query's index); [`Error::OutOfMemory`], [`Error::Device`].
+    pub fn query(
+        &mut self,
+        points: impl IntoIterator<Item = [f32; 3]>,
+        radii: Radii,
+        request: ListRequest,
+    ) -> Result<NeighborList> {
+        let loaded = self.loaded()?;
+        let queries = loaded.queries(points, radii)?;
+        loaded.list_queries(&queries, request)
+    }
+
+    /// The same, left on the device; images are kept where `request` asks for shifts or distances; rows are not sorted.
+    ///
+    /// # Errors
+    /// As [`CudaEngine::query`].
+    pub fn query_on_device(
+        &mut self,
+        points: impl IntoIterator<Item = [f32; 3]>,
+        radii: Radii,
+        request: ListRequest,
+    ) -> Result<&DeviceList> {
+        let loaded = self.loaded()?;
+        let queries = loaded.queries(points, radii)?;
+        loaded.list_queries_on_device(&queries, request.shifts || request.distances)
+    }
+
+    /// Number of particles within `radii` of each of other points, left on the device.
+    ///
+    /// # Errors
+    /// As [`CudaEngine::query`].
+    pub fn query_count_on_device(
+        &mut self,
+        points: impl IntoIterator<Item = [f32; 3]>,
+        radii: Radii,
+    ) -> Result<&Buffer<u32>> {
+        let loaded = self.loaded()?;
+        let queries = loaded.queries(points, radii)?;
+        loaded.count_queries_on_device(&queries)
     }
 
     /// What `cluster` has chosen for the loaded system, once forces have been computed by it.

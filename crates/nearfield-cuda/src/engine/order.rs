@@ -67,7 +67,7 @@ impl MortonOrder {
         // SAFETY: arrays of n elements, of 8^bits cells, and one more for their starts.
         unsafe {
             launch(&*self.gpu, kernels::MORTON_COUNT, n as u64, &arguments)?;
-            self.scan.run(&self.count, &mut self.start)?;
+            self.scan.run(&*self.gpu, &self.count, &mut self.start)?;
             launch(&*self.gpu, kernels::MORTON_SCATTER, n as u64, &arguments)?;
         }
         Ok(&self.order)

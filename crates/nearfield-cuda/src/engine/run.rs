@@ -17,7 +17,8 @@ impl Loaded {
         }
         if steps > 0 {
             let last = from + steps;
-            let integrator = Integrator::new(&self.gpu, &self.physics, dynamics, self.state.len(), from + 1..last + 1)?;
+            let Self { gpu, constants, physics, state, .. } = self;
+            let integrator = Integrator::new(gpu, constants, physics, dynamics, state.len(), from + 1..last + 1)?;
             self.forces_valid = false;
             self.move_all(&integrator, Half::Start, from)?;
             let fused = self.plan.method == Method::RtPerse && !integrator.rescales();

@@ -1,6 +1,9 @@
 //! The particles on the device, in memory order.
 
-use crate::{Buffer, Gpu, gpu::launch};
+use crate::{
+    Buffer, Gpu,
+    gpu::{Queue, launch},
+};
 use nearfield_core::{Error, Particles, Radii, Result, System};
 use nearfield_kernels::{
     Float4, Ptr, kernels,
@@ -106,7 +109,7 @@ impl State {
     }
 
     /// Puts particle `order[k]` at place k, forces too where there are any.
-    pub fn permute(&mut self, order: Ptr<u32>, force: &mut Buffer<Float4>) -> Result<()> {
+    pub fn permute(&mut self, queue: &dyn Queue, order: Ptr<u32>, force: &mut Buffer<Float4>) -> Result<()> {
         let n = self.len();
         self.spare.resize(n)?;
         self.spare_id.resize(n)?;
@@ -128,7 +131,7 @@ impl State {
             place: self.place.ptr(),
         };
         // SAFETY: all arrays have n elements, forces n or none; `order` is the caller's permutation of n.
-        unsafe { launch(&*self.gpu, kernels::PERMUTE, n as u64, &arguments)? };
+        unsafe { launch(queue, kernels::PERMUTE, n as u64, &arguments)? };
         std::mem::swap(&mut self.moving, &mut self.spare);
         std::mem::swap(&mut self.id, &mut self.spare_id);
         *force = sorted_force;

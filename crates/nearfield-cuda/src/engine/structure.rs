@@ -101,7 +101,7 @@ impl Structure {
             Self::Cells(grid) => {
                 let particles = scene.particles;
                 // SAFETY: the scene's positions are n.
-                unsafe { grid.build(particles.position, particles.n as usize, scene.law.variable != 0)? };
+                unsafe { grid.build(&**scene.gpu, particles.position, particles.n as usize, scene.law.variable != 0)? };
                 Ok(Updated { built: true, forced: false })
             }
             Self::Bodies(bvh) => bvh.update(action, scene),
@@ -157,9 +157,9 @@ impl Structure {
     }
 
     /// Cells of the present positions where most particles have no neighbours.
-    pub fn sparse_cells(&self) -> Option<&Grid> {
+    pub fn sparse_cells(&mut self) -> Option<&mut Grid> {
         let cells = match self {
-            Self::Cells(grid) => Some(&**grid),
+            Self::Cells(grid) => Some(&mut **grid),
             Self::Clusters(clusters) => clusters.cells(),
             _ => None,
         };

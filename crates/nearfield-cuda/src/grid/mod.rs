@@ -1,16 +1,24 @@
 //! Cells on the device: particles sorted by cell, so that a warp takes neighbours and finds candidates in rows.
 
+mod bipartite;
 mod bulk;
 mod classes;
 mod plan;
 mod query;
+mod steps;
 mod width;
 
+pub use bipartite::{PointQuery, count as count_queries, list as list_queries};
+pub(crate) use plan::SPARSE;
 pub use plan::{CellPlan, Survey};
 pub use query::{Candidates, ForceQuery, ListQuery, Pairs, count, forces, list};
-pub(crate) use query::{CellStep, step};
+pub(crate) use steps::{CellStepper, CellSteps};
 
-use crate::{Buffer, Gpu, gpu::launch, scan::Scan};
+use crate::{
+    Buffer, Gpu,
+    gpu::{Queue, launch},
+    scan::Scan,
+};
 use nearfield_core::Result;
 use nearfield_kernels::{
     Float4, Ptr, kernels,
@@ -20,7 +28,6 @@ use std::sync::Arc;
 
 /// Particles sorted into cells.
 pub struct Grid {
-    gpu: Arc<dyn Gpu>,
     plan: CellPlan,
     n: usize,
     count: Buffer<u32>,
@@ -37,7 +44,6 @@ impl Grid {
     pub fn new(gpu: &Arc<dyn Gpu>) -> Self {
         let buffer = || Buffer::new(gpu, "cells");
         Self {
-            gpu: gpu.clone(),
             plan: CellPlan::default(),
             n: 0,
             count: buffer(),
@@ -61,21 +67,21 @@ impl Grid {
         self.plan.is_much_as(&before)
     }
 
-    /// Sorts `n` particles by the cells of [`Grid::plan`], which must have been called. `variable`: radii are in w.
+    /// Enqueues the sorting of `n` particles by the cells of [`Grid::plan`], which must have been called. `variable`: radii are in w.
     ///
     /// # Safety
     /// `position` is the address of `n` positions.
     ///
     /// # Errors
-    /// As [`Gpu::allocate`] and [`Gpu::launch`].
-    pub unsafe fn build(&mut self, position: Ptr<Float4>, n: usize, variable: bool) -> Result<()> {
+    /// As [`Gpu::allocate`] and [`Queue::launch`].
+    pub unsafe fn build(&mut self, queue: &dyn Queue, position: Ptr<Float4>, n: usize, variable: bool) -> Result<()> {
         self.n = n;
         for buffer in [&mut self.cell, &mut self.rank, &mut self.particle] {
             buffer.resize(n)?;
         }
         self.slot.resize(n)?;
         self.count.resize_with_room(self.plan.n_cells)?;
-        self.count.zero()?;
+        self.count.zero_by(queue)?;
         self.start.resize_with_room(self.plan.n_cells + 1)?;
         let arguments = SortArgs {
             grid: self.layout(),
@@ -89,9 +95,9 @@ impl Grid {
         // SAFETY: arrays of n particles, of all cells, and one more for their starts; kernels keep within the cells
         // whatever the positions.
         unsafe {
-            launch(&*self.gpu, kernels::CELL_COUNT, n as u64, &arguments)?;
-            self.scan.run(&self.count, &mut self.start)?;
-            launch(&*self.gpu, kernels::CELL_SCATTER, n as u64, &arguments)
+            launch(queue, kernels::CELL_COUNT, n as u64, &arguments)?;
+            self.scan.run(queue, &self.count, &mut self.start)?;
+            launch(queue, kernels::CELL_SCATTER, n as u64, &arguments)
         }
     }
 
@@ -134,7 +140,7 @@ impl Grid {
         self.plan.classes.len() > 1
     }
 
-    /// Whether most particles have no neighbours, so that [`step`] suits them.
+    /// Whether most particles have no neighbours, so that [`CellStepper`] suits them.
     pub(crate) fn is_sparse(&self) -> bool {
         self.plan.sparse
     }

@@ -12,7 +12,7 @@ use nearfield_kernels::{Float4, layouts::CellClass};
 const CELLS_PER_WIDTH: f64 = 4.0;
 
 /// Expected neighbours below which most particles have none: cells then hold about one.
-const SPARSE: f64 = 1.0;
+pub(crate) const SPARSE: f64 = 1.0;
 
 /// Most cells to a particle, and in any case: where particles cluster, cells are coarser than these would like.
 const CELLS_PER_PARTICLE: f64 = 4.0;

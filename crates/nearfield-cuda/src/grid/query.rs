@@ -1,14 +1,15 @@
 //! Forces and neighbour lists, by cells or by testing all pairs.
 
 use super::Grid;
-use crate::{DeviceList, Gpu, gpu::launch};
+use crate::{
+    DeviceList,
+    gpu::{Queue, launch},
+};
 use nearfield_core::{ListKind, Result};
 use nearfield_kernels::{
     Float4, Ptr,
     kernels::{self, CELL_FORCES, CLUSTER, CLUSTER_FORCES, ListKernels},
-    layouts::{
-        self, Box3, CellStepArgs, GatherArgs, Integrator, Law, ListArgs, NumberArgs, Particles, Results, Status,
-    },
+    layouts::{self, Box3, GatherArgs, Law, ListArgs, NumberArgs, Results},
 };
 
 /// Where candidates come from.
@@ -93,8 +94,8 @@ pub struct ForceQuery {
 /// Addresses in `query` and `candidates` are of as many particles as `candidates` has.
 ///
 /// # Errors
-/// As [`Gpu::launch`].
-pub unsafe fn forces(gpu: &dyn Gpu, candidates: Candidates, query: &ForceQuery) -> Result<()> {
+/// As [`Queue::launch`].
+pub unsafe fn forces(queue: &dyn Queue, candidates: Candidates, query: &ForceQuery) -> Result<()> {
     let family = match candidates {
         Candidates::Cells(_) if query.pairs == Pairs::Once => CLUSTER_FORCES,
         Candidates::Cells(_) => CELL_FORCES,
@@ -111,43 +112,7 @@ pub unsafe fn forces(gpu: &dyn Gpu, candidates: Candidates, query: &ForceQuery) 
         slack: candidates.slack(),
     };
     // SAFETY: the caller's promise.
-    unsafe { launch(gpu, kernel, candidates.threads(), &arguments) }
-}
-
-/// Enqueues the forces on all particles and a step of theirs, where most have no neighbours.
-///
-/// # Safety
-/// The particles are those that the cells were built from, at the same positions and as many as all arrays of `step`.
-///
-/// # Errors
-/// As [`Gpu::launch`].
-pub(crate) unsafe fn step(gpu: &dyn Gpu, grid: &Grid, law: &Law, step: &CellStep) -> Result<()> {
-    let CellStep { integrator, particles, status, number } = *step;
-    let gather = GatherArgs {
-        law: *law,
-        space: integrator.space,
-        grid: grid.layout(),
-        velocity: particles.velocity,
-        results: Results::default(),
-        n: grid.n as u32,
-        slack: grid.plan.slack,
-    };
-    let arguments = CellStepArgs { gather, integrator, particles, status, step: number };
-    // SAFETY: the caller's promise.
-    unsafe { launch(gpu, kernels::CELL_STEP.choose(law, false, false), grid.n as u64, &arguments) }
-}
-
-/// A step of particles in cells.
-#[derive(Clone, Copy)]
-pub(crate) struct CellStep {
-    /// How particles move.
-    pub integrator: Integrator,
-    /// The particles.
-    pub particles: Particles,
-    /// What went wrong.
-    pub status: Ptr<Status>,
-    /// The step that the forces belong to: its second half kick is done, then the first one and the drift of the next.
-    pub number: u64,
+    unsafe { launch(queue, kernel, candidates.threads(), &arguments) }
 }
 
 /// What is listed.
@@ -172,19 +137,19 @@ pub struct ListQuery {
 /// each once.
 ///
 /// # Errors
-/// As [`Gpu::allocate`] and [`Gpu::launch`].
-pub unsafe fn count(gpu: &dyn Gpu, candidates: Candidates, query: &ListQuery, list: &mut DeviceList) -> Result<()> {
+/// As [`crate::Gpu::allocate`] and [`Queue::launch`].
+pub unsafe fn count(queue: &dyn Queue, candidates: Candidates, query: &ListQuery, list: &mut DeviceList) -> Result<()> {
     list.start(candidates.n())?;
     if let Candidates::Cells(grid) = candidates {
         list.number.resize(grid.n)?;
         let (particle, id, number) = (grid.particle.ptr(), query.id, list.number.ptr());
         let arguments = NumberArgs { particle, id, number, n: grid.n as u32, unused: 0 };
         // SAFETY: the caller's promise, and a number for each slot.
-        unsafe { launch(gpu, kernels::NUMBER_SLOTS, grid.n as u64, &arguments)? };
+        unsafe { launch(queue, kernels::NUMBER_SLOTS, grid.n as u64, &arguments)? };
     }
     let kernel = list_kernels(candidates, query).count;
     // SAFETY: the caller's promise, and a count for each row.
-    unsafe { launch(gpu, kernel, candidates.threads(), &arguments(candidates, query, list)) }
+    unsafe { launch(queue, kernel, candidates.threads(), &arguments(candidates, query, list)) }
 }
 
 /// Lists the neighbours of all particles, by input index; waits for the device once, to know how many there are.
@@ -194,14 +159,14 @@ pub unsafe fn count(gpu: &dyn Gpu, candidates: Candidates, query: &ListQuery, li
 ///
 /// # Errors
 /// As [`count`].
-pub unsafe fn list(gpu: &dyn Gpu, candidates: Candidates, query: &ListQuery, list: &mut DeviceList) -> Result<()> {
+pub unsafe fn list(queue: &dyn Queue, candidates: Candidates, query: &ListQuery, list: &mut DeviceList) -> Result<()> {
     // SAFETY: the caller's promise.
-    unsafe { count(gpu, candidates, query, list)? };
+    unsafe { count(queue, candidates, query, list)? };
     let entries = list.place_rows()?;
     list.make_room(entries, query.images)?;
     let kernel = list_kernels(candidates, query).fill;
     // SAFETY: the same pairs are found again, for which there is room.
-    unsafe { launch(gpu, kernel, candidates.threads(), &arguments(candidates, query, list)) }
+    unsafe { launch(queue, kernel, candidates.threads(), &arguments(candidates, query, list)) }
 }
 
 fn list_kernels(candidates: Candidates, query: &ListQuery) -> ListKernels {

@@ -8,11 +8,13 @@
 //! | `melt::` | energy and momentum over `NEARFIELD_MELT_STEPS` steps (2,000 unless said) |
 //! | `checkpoints::` | runs that change between GPU and CPU |
 //! | `memory::` | what does not fit |
+//! | `sequences::` | work kept as CUDA graphs |
 
 mod checkpoints;
 mod melt;
 mod memory;
 mod neighbors;
+mod sequences;
 mod small;
 
 use libtest_mimic::{Arguments, Trial};
@@ -76,6 +78,8 @@ fn main() {
         plans::each_structure(),
         neighbors::pairs_are_those_of_the_cpu,
     );
+    let queries = "neighbors::queries_are_answered_as_by_the_cpu";
+    trials.add(queries, Needs::Cuda, neighbors::queries_are_answered_as_by_the_cpu);
     let rays = plans::each_structure().into_iter().filter(|plan| plan.method.uses_bvh());
     trials.add_for(
         "neighbors::a_million_particles_have_the_pairs_that_cells_find",
@@ -91,6 +95,11 @@ fn main() {
     trials.add_for("checkpoints::a_run_goes_on_from_cpu_to_gpu", plans::each_method(), checkpoints::from_cpu_to_gpu);
     let cell = vec![Plan::new(Method::Cell)];
     trials.add_for("memory::a_list_that_does_not_fit_is_an_error", cell, memory::a_list_that_does_not_fit_is_an_error);
+    trials.add(
+        "sequences::a_sequence_that_comes_again_is_kept_as_a_graph",
+        Needs::Cuda,
+        sequences::a_sequence_that_comes_again_is_kept_as_a_graph,
+    );
     libtest_mimic::run(&arguments, trials.trials).exit();
 }
 

@@ -1,6 +1,7 @@
 //! Neighbours of more particles than brute force on the host can manage.
 
 use crate::loaded;
+use nearfield::NeighborSearch;
 use nearfield_conformance::cases;
 use nearfield_core::{
     Boundary::{Open, Periodic, Wall},
@@ -57,6 +58,23 @@ pub fn pairs_are_those_of_the_cpu(plan: &Plan) {
             counts[pair.j as usize] += 1;
         }
         assert!(counted.neighbors == counts && totals.pairs == expected.len() as u64, "{plan:?}, {boundary:?}");
+    }
+}
+
+/// Indices, images and distances of queries by other points, of one radius and of many.
+pub fn queries_are_answered_as_by_the_cpu() {
+    const ALL: ListRequest = ListRequest { kind: ListKind::Full, shifts: true, distances: true, sorted: true };
+    for (system, _) in SYSTEMS.iter() {
+        let points = cases::uniform(30_001, &system.sim_box, 6);
+        let of_each = (0..points.len()).map(|k| 0.1 + 4.0 * (k as f32 / points.len() as f32).powi(3)).collect();
+        let search = NeighborSearch::with_radii(system.sim_box, system.particles.position.iter(), system.radii.clone());
+        let search = search.expect("the system is valid");
+        let mut engine = loaded(system, &Plan::new(Method::Cell)).expect("cells treat every system");
+        for radii in [Radii::Uniform(1.3), Radii::PerParticle(of_each)] {
+            let expected = search.query(points.iter().copied(), radii.clone(), ALL).expect("valid queries");
+            let found = engine.query(points.iter().copied(), radii, ALL).expect("an answer");
+            assert!(found == expected, "{} entries for {}", found.n_entries(), expected.n_entries());
+        }
     }
 }
 

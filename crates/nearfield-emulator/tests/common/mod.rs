@@ -4,7 +4,7 @@
 
 use bytemuck::{Pod, Zeroable};
 use nearfield_core::{Error, Result};
-use nearfield_cuda::gpu::{Gpu, Launch, RayTracing};
+use nearfield_cuda::gpu::{Gpu, Launch, Queue, RayTracing};
 use nearfield_emulator::Emulator;
 
 /// An emulator, where tests of it are not ignored.

@@ -21,6 +21,10 @@ typedef unsigned long long u64;
     extern "C" __global__ void __launch_bounds__(threads, blocks) name(const __grid_constant__ Args a)
 #endif
 
+// What few particles need stays out of line, so that the others have its registers. Such functions take and give values:
+// arguments by reference would have to be kept in memory.
+#define RARE __device__ __noinline__
+
 __device__ inline u32 thread_index() {
     return blockIdx.x * blockDim.x + threadIdx.x;
 }

@@ -36,39 +36,47 @@ __device__ inline u64 failure(u64 step, u32 id) {
     return step << 32 | id;
 }
 
-__device__ inline void kick(const Integrator& how, Moving& p, const float4& force) {
-    const float half_kick = how.half_kick[__float_as_uint(p.velocity.w)];
+__device__ inline float half_kick_of(const Integrator& how, const Moving& p) {
+    return how.half_kick[__float_as_uint(p.velocity.w)];
+}
+
+__device__ inline void kick(Moving& p, float half_kick, const float4& force) {
     p.velocity.x += half_kick * force.x;
     p.velocity.y += half_kick * force.y;
     p.velocity.z += half_kick * force.z;
 }
 
-// Shortens a velocity that would carry the particle beyond the displacement limit.
-__device__ inline void limit(const Integrator& how, Moving& p) {
-    // Nearly always, and without square roots.
-    const float below = how.speed_limit * how.speed_limit * 0.9999f;
-    if (p.velocity.x * p.velocity.x + p.velocity.y * p.velocity.y + p.velocity.z * p.velocity.z < below) return;
-    if (how.speed_limit == infinity()) return;
-    // In f64: capped forces of 1e30 square beyond f32.
-    const double x = p.velocity.x, y = p.velocity.y, z = p.velocity.z;
+// In f64: capped forces of 1e30 square beyond f32.
+RARE float3 shortened(double x, double y, double z, double most) {
     const double speed = sqrt((x * x + y * y) + z * z);
-    if (speed > (double)how.speed_limit) {
-        const double scale = (double)how.speed_limit / speed;
-        p.velocity.x = (float)(x * scale);
-        p.velocity.y = (float)(y * scale);
-        p.velocity.z = (float)(z * scale);
-    }
+    const double scale = speed > most ? most / speed : 1.0;
+    return make_float3((float)(x * scale), (float)(y * scale), (float)(z * scale));
 }
 
+// Shortens a velocity that would carry the particle beyond the displacement limit.
+__device__ inline void limit(const Integrator& how, Moving& p) {
+    float4& v = p.velocity;
+    // Nearly always, and without square roots.
+    const float below = how.speed_limit * how.speed_limit * 0.9999f;
+    if (v.x * v.x + v.y * v.y + v.z * v.z < below || how.speed_limit == infinity()) return;
+    const float3 within = shortened(v.x, v.y, v.z, how.speed_limit);
+    v = make_float4(within.x, within.y, within.z, v.w);
+}
+
+// A coordinate and a velocity along an axis, and the periods that were taken from the coordinate.
+struct Returned {
+    float x, v;
+    int crossings;
+};
+
 // SimBox::wrap of one axis.
-__device__ inline void wrap(const Box3& space, int axis, float& x, int& crossings) {
-    const double lo = space.lo[axis], hi = space.hi[axis];
+__device__ inline Returned wrap(float lower, float upper, float x, float v) {
+    const double lo = lower, hi = upper;
     const double count = floor(((double)x - lo) / (hi - lo));
     const float wrapped = (float)((double)x - count * (hi - lo));
-    // Rounding to f32 may land on `hi` itself, which is the image of `lo`.
-    const bool at_end = wrapped >= space.hi[axis];
-    x = at_end || wrapped < space.lo[axis] ? space.lo[axis] : wrapped;
-    crossings = (int)count + (at_end ? 1 : 0);
+    // Rounding to f32 may land on `upper` itself, which is the image of `lower`.
+    const bool at_end = wrapped >= upper;
+    return {at_end || wrapped < lower ? lower : wrapped, v, (int)count + (at_end ? 1 : 0)};
 }
 
 __device__ inline double euclidean_remainder(double x, double period) {
@@ -77,26 +85,28 @@ __device__ inline double euclidean_remainder(double x, double period) {
 }
 
 // Elastic reflection at both walls; a fast particle may bounce several times.
-__device__ inline void reflect(const Box3& space, int axis, float& x, float& v) {
-    const float lo = space.lo[axis], hi = space.hi[axis];
-    if ((x >= lo && x <= hi) || !(fabsf(x) < infinity())) return;
-    const double length = (double)hi - (double)lo, from_lo = (double)x - (double)lo;
+__device__ inline Returned reflect(float lower, float upper, float x, float v) {
+    if (x == upper || !(fabsf(x) < infinity())) return {x, v, 0};
+    const double lo = lower, hi = upper, length = hi - lo, from_lo = (double)x - lo;
     const double phase = euclidean_remainder(from_lo, 2.0 * length);
     const double reflected = phase > length ? 2.0 * length - phase : phase;
-    x = clamped((float)((double)lo + reflected), lo, hi);
-    if (euclidean_remainder(floor(from_lo / length), 2.0) == 1.0) v = -v;
+    const bool turned = euclidean_remainder(floor(from_lo / length), 2.0) == 1.0;
+    return {clamped((float)(lo + reflected), lower, upper), turned ? -v : v, 0};
+}
+
+// What becomes of a particle that is not within the box.
+RARE Returned returned(int boundary, float lower, float upper, float x, float v) {
+    return boundary == 0 ? wrap(lower, upper, x, v) : reflect(lower, upper, x, v);
 }
 
 __device__ inline void apply_boundary(const Box3& space, int axis, float& x, float& v, Moving& p) {
-    if (x >= space.lo[axis] && x < space.hi[axis]) return;
-    if (space.boundary[axis] == 0) {
-        int crossings;
-        wrap(space, axis, x, crossings);
-        p.image[axis] += crossings;
-        p.crossed = true;
-    } else if (space.boundary[axis] == 1) {
-        reflect(space, axis, x, v);
-    }
+    const int boundary = space.boundary[axis];
+    if ((x >= space.lo[axis] && x < space.hi[axis]) || boundary > 1) return;
+    const Returned at = returned(boundary, space.lo[axis], space.hi[axis], x, v);
+    x = at.x;
+    v = at.v;
+    p.image[axis] += at.crossings;
+    p.crossed |= boundary == 0;
 }
 
 __device__ inline void drift(const Integrator& how, Moving& p, float dt) {
@@ -108,47 +118,49 @@ __device__ inline void drift(const Integrator& how, Moving& p, float dt) {
     apply_boundary(how.space, 2, p.position.z, p.velocity.z, p);
 }
 
-// First half kick and drift of `step`.
-__device__ inline void start_step(const Integrator& how, Moving& p, const float4& force, u32 id, u64 step) {
-    kick(how, p, force);
+// First half kick and drift of `step`. Only with NOISE can it be one of Langevin dynamics.
+template <bool NOISE>
+__device__ inline void start_step(const Integrator& how, Moving& p, float half_kick, const float4& force, u32 id,
+                                  u64 step) {
+    kick(p, half_kick, force);
     limit(how, p);
-    if (!how.langevin) {
+    if (!NOISE || !how.langevin) {
         drift(how, p, how.dt);
         return;
     }
     drift(how, p, 0.5f * how.dt);
-    double noise[3];
-    normals(how.seed, step, id, noise);
+    const Normals noise = normals(how.seed[0], how.seed[1], step, id);
     const float strength = how.noise[__float_as_uint(p.velocity.w)];
-    p.velocity.x = how.damping * p.velocity.x + strength * (float)noise[0];
-    p.velocity.y = how.damping * p.velocity.y + strength * (float)noise[1];
-    p.velocity.z = how.damping * p.velocity.z + strength * (float)noise[2];
+    p.velocity.x = how.damping * p.velocity.x + strength * (float)noise.x;
+    p.velocity.y = how.damping * p.velocity.y + strength * (float)noise.y;
+    p.velocity.z = how.damping * p.velocity.z + strength * (float)noise.z;
     limit(how, p);
     drift(how, p, 0.5f * how.dt);
 }
 
 // Second half kick, limited too, so that observers see a velocity that the particle will move by.
-__device__ inline void finish_step(const Integrator& how, Moving& p, const float4& force) {
-    kick(how, p, force);
+__device__ inline void finish_step(const Integrator& how, Moving& p, float half_kick, const float4& force) {
+    kick(p, half_kick, force);
     limit(how, p);
 }
 
 // The rest of `step` of particle `i`, `p`, and the beginning of the next. A particle that has failed is noted and left
 // where it was, so that coordinates stay finite until the run is stopped.
-__device__ inline bool advance(const Integrator& how, Status* status, const u32* ids, u32 i, u64 step, Moving& p,
-                               const float4& force) {
+template <bool NOISE>
+__device__ inline bool advance(const Integrator& how, Status* status, const Particles& particles, u32 i, u64 step,
+                               Moving& p, const float4& force) {
     if (!all_finite(force)) {
-        atomicMin(&status->force, failure(step, ids[i]));
+        atomicMin(&status->force, failure(step, particles.id[i]));
         return false;
     }
-    const Moving before = p;
     // Random numbers take input indices; nothing else does.
-    const u32 id = how.langevin ? ids[i] : 0;
-    finish_step(how, p, force);
-    start_step(how, p, force, id, step + 1);
+    const u32 id = NOISE && how.langevin ? particles.id[i] : 0;
+    const float half_kick = half_kick_of(how, p);
+    finish_step(how, p, half_kick, force);
+    start_step<NOISE>(how, p, half_kick, force, id, step + 1);
     if (!all_finite(p.position)) {
-        atomicMin(&status->position, failure(step + 1, ids[i]));
-        p = before;
+        atomicMin(&status->position, failure(step + 1, particles.id[i]));
+        p = load_moving(particles, i);
         return false;
     }
     return true;

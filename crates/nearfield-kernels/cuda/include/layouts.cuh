@@ -401,10 +401,23 @@ struct CellStepArgs {
     Particles particles;
     // What went wrong.
     Status *status;
-    // The step that the forces belong to.
+    // The step that the present launches begin with.
+    u64 *first;
+    // The step that the forces belong to, from that on.
+    u32 index;
+    // Zero.
+    u32 unused;
+};
+static_assert(sizeof(CellStepArgs) == 888, "CellStepArgs differs between host and device");
+
+// Arguments of `begin_cell_steps`.
+struct FirstStepArgs {
+    // Where [`CellStepArgs`] find it.
+    u64 *first;
+    // The step.
     u64 step;
 };
-static_assert(sizeof(CellStepArgs) == 880, "CellStepArgs differs between host and device");
+static_assert(sizeof(FirstStepArgs) == 16, "FirstStepArgs differs between host and device");
 
 // Arguments of `number_slots`.
 struct NumberArgs {
@@ -450,6 +463,18 @@ struct ListArgs {
 };
 static_assert(sizeof(ListArgs) == 736, "ListArgs differs between host and device");
 
+// Arguments of `query_*`: lists of queries among points of another set.
+struct QueryArgs {
+    // The points, in cells of one class, with rows by query; [`ListArgs::n`] is the number of queries. Radii are per
+    // query, whatever the law says.
+    ListArgs list;
+    // Queries in an order that keeps near ones together, with radii in w.
+    float4 *query;
+    // Row of each of these.
+    u32 *row;
+};
+static_assert(sizeof(QueryArgs) == 752, "QueryArgs differs between host and device");
+
 // Consecutive chunks of 32 entries of a cluster's list.
 struct Segment {
     // First chunk.
@@ -468,14 +493,37 @@ struct ClusterControl {
     // The first step whose positions the list may not serve; all ones while none is known, zero where there was no
     // room for the list.
     u64 rebuild_at;
-    // The last step that was computed by the list.
-    u64 done;
+    // The step that the present launches of steps begin with.
+    u64 first;
+    // The step that the positions belong to, which is to be computed next.
+    u64 next;
+    // The first step that is not to be computed.
+    u64 end;
     // Chunks of all lists.
     u32 chunks;
     // Segments beyond the first of each cluster.
     u32 segments;
+    // Lists made since `begin_steps` after others that had served.
+    u32 lists;
+    // Most steps that one of those others has served for since then.
+    u32 longest;
+    // How many of them did not serve for a second step.
+    u32 dangerous;
+    // Zero.
+    u32 unused;
 };
-static_assert(sizeof(ClusterControl) == 24, "ClusterControl differs between host and device");
+static_assert(sizeof(ClusterControl) == 56, "ClusterControl differs between host and device");
+
+// Arguments of `begin_steps` and `begin_list`.
+struct ClusterControlArgs {
+    // The list.
+    ClusterControl *control;
+    // The step that the positions belong to.
+    u64 step;
+    // The first step that is not to be computed.
+    u64 end;
+};
+static_assert(sizeof(ClusterControlArgs) == 24, "ClusterControlArgs differs between host and device");
 
 // Arguments of `list_clusters`.
 struct ClusterListArgs {
@@ -518,16 +566,14 @@ struct ListedArgs {
     Segment *segment;
     // See [`ClusterListArgs`].
     u32 *entry;
-    // Nothing is done unless the list serves.
+    // Nothing is done unless the list serves; null where that is known.
     ClusterControl *control;
-    // The step that the forces belong to; zero where it is known that the list serves.
-    u64 step;
+    // The step that the forces belong to, from [`ClusterControl::first`] on.
+    u32 index;
     // Clusters that a warp of `pairs_*` takes, one after another.
     u32 clusters_per_warp;
-    // Zero.
-    u32 unused;
 };
-static_assert(sizeof(ListedArgs) == 776, "ListedArgs differs between host and device");
+static_assert(sizeof(ListedArgs) == 768, "ListedArgs differs between host and device");
 
 // Arguments of `step_*` and `move_listed`: a step of all particles by forces that are computed or read.
 struct ClusterStepArgs {
@@ -548,7 +594,7 @@ struct ClusterStepArgs {
     // Zero.
     u32 unused;
 };
-static_assert(sizeof(ClusterStepArgs) == 936, "ClusterStepArgs differs between host and device");
+static_assert(sizeof(ClusterStepArgs) == 928, "ClusterStepArgs differs between host and device");
 
 // Arguments of `clusters_moved`: whether a list serves the present positions.
 struct ClustersMovedArgs {

@@ -22,8 +22,14 @@ __device__ inline u32 clusters_of(u32 n) {
     return (n + CLUSTER - 1) / CLUSTER;
 }
 
+__device__ inline u64 step_of(const ListedArgs& a) {
+    return a.control->first + a.index;
+}
+
 __device__ inline bool serves(const ListedArgs& a) {
-    return a.control->rebuild_at > a.step;
+    if (!a.control) return true;
+    const u64 step = step_of(a);
+    return step < a.control->rebuild_at && step < a.control->end;
 }
 
 // Takes the list of a cluster 32 entries at a time to `v`, by way of shared memory for a segment of each warp. The next

@@ -62,14 +62,18 @@ template <class D, bool BRUTE, bool VARIABLE> struct Lister : Cluster {
     }
 };
 
-template <bool BRUTE, bool VARIABLE>
-struct ListCount : Lister<ListCount<BRUTE, VARIABLE>, BRUTE, VARIABLE> {
+template <class D> using CellLister = Lister<D, false, false>;
+template <class D> using CellListerOfRadii = Lister<D, false, true>;
+template <class D> using BruteLister = Lister<D, true, false>;
+template <class D> using BruteListerOfRadii = Lister<D, true, true>;
+
+template <template <class> class Base> struct ListCount : Base<ListCount<Base>> {
     static const bool FILLS = false;
 
     u32 count[CLUSTER];
 
-    __device__ ListCount(const ListArgs& arguments, const ClusterPlace& place)
-        : Lister<ListCount, BRUTE, VARIABLE>(arguments, place) {
+    template <class A>
+    __device__ ListCount(const A& arguments, const ClusterPlace& place) : Base<ListCount>(arguments, place) {
 #pragma unroll
         for (u32 k = 0; k < CLUSTER; ++k) count[k] = 0;
     }
@@ -94,14 +98,13 @@ struct ListCount : Lister<ListCount<BRUTE, VARIABLE>, BRUTE, VARIABLE> {
     }
 };
 
-template <bool BRUTE, bool VARIABLE>
-struct ListFill : Lister<ListFill<BRUTE, VARIABLE>, BRUTE, VARIABLE> {
+template <template <class> class Base> struct ListFill : Base<ListFill<Base>> {
     static const bool FILLS = true;
 
     u32* next[CLUSTER]; // where the row of particle k goes on
 
-    __device__ ListFill(const ListArgs& arguments, const ClusterPlace& place)
-        : Lister<ListFill, BRUTE, VARIABLE>(arguments, place) {
+    template <class A>
+    __device__ ListFill(const A& arguments, const ClusterPlace& place) : Base<ListFill>(arguments, place) {
         const u64 start = this->a.offset[this->id];
 #pragma unroll
         for (u32 k = 0; k < CLUSTER; ++k) next[k] = this->a.index + __shfl_sync(ALL_LANES, start, k);

@@ -23,14 +23,16 @@ __device__ inline double uniform(u32 bits) {
     return ((double)bits + 0.5) / 4294967296.0;
 }
 
+struct Normals {
+    double x, y, z;
+};
+
 // Three standard normal numbers by the Box-Muller transform.
-__device__ inline void normals(const u32 (&seed)[2], u64 step, u32 index, double (&out)[3]) {
+RARE Normals normals(u32 seed0, u32 seed1, u64 step, u32 index) {
     u32 c[4] = {index, (u32)step, (u32)(step >> 32), STREAM_LANGEVIN};
-    philox(c, seed[0], seed[1]);
+    philox(c, seed0, seed1);
     double s, t;
     sincos(6.283185307179586 * uniform(c[1]), &s, &t);
     const double r = sqrt(-2.0 * log(uniform(c[0])));
-    out[0] = r * t;
-    out[1] = r * s;
-    out[2] = sqrt(-2.0 * log(uniform(c[2]))) * cos(6.283185307179586 * uniform(c[3]));
+    return {r * t, r * s, sqrt(-2.0 * log(uniform(c[2]))) * cos(6.283185307179586 * uniform(c[3]))};
 }

@@ -25,12 +25,34 @@ layouts! {
         /// The first step whose positions the list may not serve; all ones while none is known, zero where there was no
         /// room for the list.
         pub rebuild_at: u64,
-        /// The last step that was computed by the list.
-        pub done: u64,
+        /// The step that the present launches of steps begin with.
+        pub first: u64,
+        /// The step that the positions belong to, which is to be computed next.
+        pub next: u64,
+        /// The first step that is not to be computed.
+        pub end: u64,
         /// Chunks of all lists.
         pub chunks: u32,
         /// Segments beyond the first of each cluster.
         pub segments: u32,
+        /// Lists made since `begin_steps` after others that had served.
+        pub lists: u32,
+        /// Most steps that one of those others has served for since then.
+        pub longest: u32,
+        /// How many of them did not serve for a second step.
+        pub dangerous: u32,
+        /// Zero.
+        pub unused: u32,
+    }
+
+    /// Arguments of `begin_steps` and `begin_list`.
+    pub struct ClusterControlArgs {
+        /// The list.
+        pub control: Ptr<ClusterControl>,
+        /// The step that the positions belong to.
+        pub step: u64,
+        /// The first step that is not to be computed.
+        pub end: u64,
     }
 
     /// Arguments of `list_clusters`.
@@ -73,14 +95,12 @@ layouts! {
         pub segment: Ptr<Segment>,
         /// See [`ClusterListArgs`].
         pub entry: Ptr<u32>,
-        /// Nothing is done unless the list serves.
+        /// Nothing is done unless the list serves; null where that is known.
         pub control: Ptr<ClusterControl>,
-        /// The step that the forces belong to; zero where it is known that the list serves.
-        pub step: u64,
+        /// The step that the forces belong to, from [`ClusterControl::first`] on.
+        pub index: u32,
         /// Clusters that a warp of `pairs_*` takes, one after another.
         pub clusters_per_warp: u32,
-        /// Zero.
-        pub unused: u32,
     }
 
     /// Arguments of `step_*` and `move_listed`: a step of all particles by forces that are computed or read.

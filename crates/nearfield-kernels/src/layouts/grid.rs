@@ -104,7 +104,19 @@ layouts! {
         pub particles: Particles,
         /// What went wrong.
         pub status: Ptr<Status>,
-        /// The step that the forces belong to.
+        /// The step that the present launches begin with.
+        pub first: Ptr<u64>,
+        /// The step that the forces belong to, from that on.
+        pub index: u32,
+        /// Zero.
+        pub unused: u32,
+    }
+
+    /// Arguments of `begin_cell_steps`.
+    pub struct FirstStepArgs {
+        /// Where [`CellStepArgs`] find it.
+        pub first: Ptr<u64>,
+        /// The step.
         pub step: u64,
     }
 
@@ -148,5 +160,16 @@ layouts! {
         pub slack: f32,
         /// Zero.
         pub unused: u32,
+    }
+
+    /// Arguments of `query_*`: lists of queries among points of another set.
+    pub struct QueryArgs {
+        /// The points, in cells of one class, with rows by query; [`ListArgs::n`] is the number of queries. Radii are per
+        /// query, whatever the law says.
+        pub list: ListArgs,
+        /// Queries in an order that keeps near ones together, with radii in w.
+        pub query: Ptr<Float4>,
+        /// Row of each of these.
+        pub row: Ptr<u32>,
     }
 }

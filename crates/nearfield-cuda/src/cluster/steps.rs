@@ -1,0 +1,67 @@
+//! Steps by lists, and the lists they need on the way, without waiting in between.
+
+use super::{
+    Clusters,
+    list::StepQuery,
+    pace::{Served, Stretch},
+};
+use crate::{Buffer, Sequence};
+use nearfield_core::{Report, Result};
+use std::ops::Range;
+
+impl Clusters {
+    /// Makes steps from forces at the first of `steps` on, whose positions the list serves, and none beyond the last; waits
+    /// for the device to know how many there were. Lists are made anew on the way until about step `replan`. Where there
+    /// was no room for a list it is then made with more, or pairs are found in cells where it would exceed the budget.
+    pub(crate) fn steps(
+        &mut self,
+        mut query: StepQuery,
+        steps: Range<u64>,
+        replan: u64,
+        report: &mut Report,
+    ) -> Result<u64> {
+        if query.state.len() == 0 {
+            return Ok(steps.end - steps.start);
+        }
+        let stretch = self.pace.stretch(steps.end.min(replan).saturating_sub(steps.start));
+        self.list.begin_steps(&mut query, steps.start, steps.end)?;
+        for _ in 0..stretch.lists {
+            let sequence = Sequence::default();
+            self.list.enqueue_steps(&sequence, &query, &self.grid, stretch.steps)?;
+            self.enqueue_list(&sequence, &mut query)?;
+            // SAFETY: all arrays have their size and keep it until the steps have been waited for.
+            unsafe { self.gpu.run(&sequence)? };
+        }
+        if stretch.rest > 0 {
+            let sequence = Sequence::default();
+            self.list.enqueue_steps(&sequence, &query, &self.grid, stretch.rest)?;
+            // SAFETY: as above.
+            unsafe { self.gpu.run(&sequence)? };
+        }
+        self.finish_steps(query, steps.start, stretch, report)
+    }
+
+    /// Enqueues a list for the positions that steps lead to.
+    fn enqueue_list(&mut self, sequence: &Sequence, query: &mut StepQuery) -> Result<()> {
+        let StepQuery { physics, state, .. } = query;
+        // SAFETY: the state's positions are n.
+        unsafe { self.grid.build(sequence, state.moving.position.ptr(), state.len(), false)? };
+        state.permute(sequence, self.grid.order().ptr(), &mut Buffer::new(&self.gpu, "forces"))?;
+        self.list.enqueue(sequence, physics, state, &self.grid)
+    }
+
+    fn finish_steps(&mut self, query: StepQuery, first: u64, stretch: Stretch, report: &mut Report) -> Result<u64> {
+        let outcome = self.list.finish_steps(first)?;
+        report.builds += outcome.lists;
+        report.list_builds += outcome.lists;
+        report.dangerous_builds += outcome.dangerous;
+        if !self.list.is_settled() {
+            self.pace.hold_back();
+            self.settle(query.physics, query.state, report)?;
+        } else if outcome.lists > 0 || !outcome.fresh || outcome.longest >= stretch.steps {
+            let steps = outcome.made - outcome.by_last;
+            self.pace.learn(Served { lists: outcome.lists, steps, longest: outcome.longest });
+        }
+        Ok(outcome.made)
+    }
+}
