@@ -178,7 +178,7 @@ fn steps_do_not_depend_on_how_they_are_enqueued() {
     let langevin = Dynamics { ensemble, seed: 9, ..Dynamics::nve(0.004) };
     // Plain Lennard-Jones is not computed alike with and without random numbers.
     let motions = [(Dynamics::nve(0.004), Truncation::Cut), (langevin, Truncation::Force)];
-    let clusters = |skin| Plan { skin, ..Plan::new(Method::Cluster) };
+    let clusters = |skin| Plan { skin: Skin::Fixed(skin), ..Plan::new(Method::Cluster) };
     let cases = [
         (3.5, clusters(0.4), Some(Variant::List)),
         (8.0, clusters(0.4), Some(Variant::SparseList)),

@@ -156,7 +156,12 @@ impl SkinTuner {
     /// Takes what another tuner learned of the same system.
     pub fn set_learned(&mut self, learned: LearnedSkin) {
         let on_ladder = |rung: i32| rung.clamp(LADDER[0], LADDER[1]);
-        self.learned = LearnedSkin { rung: on_ladder(learned.rung), best: on_ladder(learned.best), ..learned };
+        self.learned = LearnedSkin {
+            rung: on_ladder(learned.rung),
+            best: on_ladder(learned.best),
+            too_large: learned.too_large.map(on_ladder),
+            ..learned
+        };
     }
 
     fn of_rung(&self, rung: i32) -> f64 {

@@ -49,6 +49,14 @@ impl Pairs {
         self.blocks.clear();
     }
 
+    /// Marks the pages of all blocks.
+    fn mark_pages(&self, seen: &mut [bool]) {
+        self.segments.iter().for_each(|segment| seen[segment.cluster as usize / 2 / PAGE] = true);
+        // What is beyond the last segment is left over from a longer list.
+        let end = self.segments.last().map_or(0, |segment| segment.end as usize);
+        self.blocks[..end].iter().for_each(|&b| seen[b as usize / PAGE] = true);
+    }
+
     /// Closes a segment of the blocks from `start` to `end`.
     fn close(&mut self, cluster: u32, image: [i8; 3], start: usize, end: usize) {
         if end > start {
@@ -60,6 +68,17 @@ impl Pairs {
     fn bytes(&self) -> usize {
         self.segments.capacity() * size_of::<Segment>() + 4 * self.blocks.capacity()
     }
+}
+
+/// What pages of sums must be there for.
+#[derive(Clone, Copy)]
+pub(super) enum Reach<'a> {
+    /// The outer lists, and whatever inner ones are made of them.
+    Outer,
+    /// The inner lists as they are.
+    Inner,
+    /// All that is within the cutoff: there is no list.
+    Grid(&'a Grid),
 }
 
 /// The lists of consecutive blocks: the work of one task.
@@ -119,6 +138,11 @@ impl PairList {
         self.tasks.par_iter_mut().with_max_len(1).for_each(|task| super::isa().run(Prune { blocks, task }));
     }
 
+    /// Pairs of clusters and blocks in the outer lists.
+    pub fn entries(&self) -> u64 {
+        self.tasks.iter().map(|task| task.outer.blocks.len() as u64).sum()
+    }
+
     /// Takes the outer lists as they are for the inner ones, for a single use.
     pub fn use_once(&mut self) {
         self.tasks.iter_mut().for_each(|task| std::mem::swap(&mut task.outer, &mut task.inner));
@@ -140,11 +164,12 @@ impl Task {
         }
     }
 
-    /// Marks the pages of blocks that are listed, or with a `grid`, for there is no list then, that may come to be.
-    pub fn mark_pages(&mut self, grid: Option<&Grid>, blocks: &Blocks, seen: &mut [bool]) {
-        let Some(grid) = grid else {
-            self.outer.segments.iter().for_each(|s| seen[s.cluster as usize / 2 / PAGE] = true);
-            return self.outer.blocks.iter().for_each(|&b| seen[b as usize / PAGE] = true);
+    /// Marks the pages of blocks that are listed, or that may come to be where there is no list.
+    pub fn mark_pages(&mut self, reach: Reach, blocks: &Blocks, seen: &mut [bool]) {
+        let grid = match reach {
+            Reach::Outer => return self.outer.mark_pages(seen),
+            Reach::Inner => return self.inner.mark_pages(seen),
+            Reach::Grid(grid) => grid,
         };
         self.clusters_of.clone().for_each(|b| seen[b / PAGE] = true);
         for first in self.clusters_of.clone().step_by(PAGE) {

@@ -32,13 +32,16 @@ mod tests;
 
 use crate::{Grid, Slots, lanes::Isa, physics::Physics};
 use blocks::Blocks;
-use list::{PairList, TASKS_PER_THREAD};
+use list::{PairList, Reach, TASKS_PER_THREAD};
 use nearfield_core::{Truncation, potentials::Potential};
 use std::ops::Range;
 pub(crate) use sums::Output;
 
 /// Particles in a block.
 pub(crate) const BLOCK: usize = 8;
+
+/// Fewest pairs of clusters and blocks to a block in a list that is not sparse; a melt has forty.
+const SPARSE: u64 = 4;
 
 /// Where particles are and how they move, in the engine's order; `dt` is zero where they do not.
 #[derive(Clone, Copy)]
@@ -102,14 +105,19 @@ impl Clusters {
     fn prune(&mut self) {
         self.list.prune(&self.blocks);
         self.prunings += 1;
+        if self.is_sparse() {
+            self.sums.lay_out(&mut self.list, &self.blocks, Reach::Inner);
+        }
+    }
+
+    /// Whether so little is near that most pages of sums are spared when only what is pruned is reached.
+    fn is_sparse(&self) -> bool {
+        self.list.entries() < SPARSE * self.blocks.len() as u64
     }
 
     /// What the list holds and how often it was pruned.
     pub fn counts(&self) -> Counts {
-        Counts {
-            entries: self.list.tasks.iter().map(|task| task.outer.blocks.len() as u64).sum(),
-            prunings: self.prunings,
-        }
+        Counts { entries: self.list.entries(), prunings: self.prunings }
     }
 
     /// The order of particles in which blocks are contiguous: place k is for particle `order[k]` of the grid's input.
@@ -124,8 +132,8 @@ impl Clusters {
         self.blocks.fill(grid, physics, moving, skin);
         let listed = self.list.build(grid, &self.blocks, physics.cutoff() + skin, budget);
         self.valid = listed && skin > 0.0;
-        if listed {
-            self.sums.lay_out(&mut self.list, &self.blocks, None);
+        if listed && !(self.valid && self.is_sparse()) {
+            self.sums.lay_out(&mut self.list, &self.blocks, Reach::Outer);
         }
         if self.valid {
             self.blocks.plan_motion(moving);
@@ -142,7 +150,7 @@ impl Clusters {
         self.valid = false;
         self.blocks.fill(grid, physics, moving, 0.0);
         self.list.divide(&self.blocks, 2 * TASKS_PER_THREAD);
-        self.sums.lay_out(&mut self.list, &self.blocks, Some(grid));
+        self.sums.lay_out(&mut self.list, &self.blocks, Reach::Grid(grid));
     }
 
     /// Forces, and energies where `out` has room for them. Sums of `exact` do not depend on the order of terms. With a
