@@ -2,6 +2,7 @@
 
 use crate::{Buffer, Gpu, scan::Scan};
 use nearfield_core::Result;
+use nearfield_kernels::layouts::StagingControl;
 use std::sync::Arc;
 
 /// A neighbour list on the device in compressed sparse rows.
@@ -12,10 +13,14 @@ pub struct DeviceList {
     pub(crate) count: Buffer<u32>,
     /// Input index of each slot's particle, where lists are made by cells.
     pub(crate) number: Buffer<u32>,
+    /// Rows before they are at their places, where that is shorter than to search twice.
+    pub(crate) staging: Staging,
     /// Row starts, `[n + 1]`.
     pub offset: Buffer<u64>,
     /// Neighbours, in no particular order within a row.
     pub index: Buffer<u32>,
+    /// Whether one search found the rows: short ones are kept elsewhere until their places are known.
+    pub at_once: bool,
     /// Periodic image of each neighbour, `(x + 1) + 3 (y + 1) + 9 (z + 1)` box lengths away; empty unless asked for.
     pub image: Buffer<u8>,
 }
@@ -28,8 +33,10 @@ impl DeviceList {
             scan: Scan::new(gpu),
             count: Buffer::new(gpu, "neighbour counts"),
             number: Buffer::new(gpu, "input indices in cell order"),
+            staging: Staging::new(gpu),
             offset: Buffer::new(gpu, "row starts"),
             index: Buffer::new(gpu, "the neighbour list"),
+            at_once: false,
             image: Buffer::new(gpu, "images of the neighbour list"),
         }
     }
@@ -42,8 +49,13 @@ impl DeviceList {
 
     /// Sums the counts into row starts and gives the number of entries; waits for the device.
     pub(crate) fn place_rows(&mut self) -> Result<u64> {
-        self.scan.run_wide(&*self.gpu, &self.count, &mut self.offset)?;
+        self.scan_rows()?;
         self.start_of(self.count.len())
+    }
+
+    /// Enqueues the sums of the counts, which are row starts.
+    pub(crate) fn scan_rows(&mut self) -> Result<()> {
+        self.scan.run_wide(&*self.gpu, &self.count, &mut self.offset)
     }
 
     /// Makes room for entries.
@@ -60,6 +72,32 @@ impl DeviceList {
     /// Bytes held on the device.
     pub fn bytes(&self) -> u64 {
         let of_rows = self.count.bytes() + self.number.bytes() + self.offset.bytes();
-        self.scan.bytes() + of_rows + self.index.bytes() + self.image.bytes()
+        self.scan.bytes() + of_rows + self.staging.bytes() + self.index.bytes() + self.image.bytes()
+    }
+}
+
+/// Rows that were found before it was known how long others are.
+pub(crate) struct Staging {
+    /// Neighbours, those of a row together.
+    pub staged: Buffer<u32>,
+    /// Where each row begins there.
+    pub start: Buffer<u64>,
+    pub control: Buffer<StagingControl>,
+    /// Whether there was too little room once: it is not tried again.
+    pub overflowed: bool,
+}
+
+impl Staging {
+    fn new(gpu: &Arc<dyn Gpu>) -> Self {
+        Self {
+            staged: Buffer::new(gpu, "rows of the neighbour list"),
+            start: Buffer::new(gpu, "rows of the neighbour list"),
+            control: Buffer::new(gpu, "rows of the neighbour list"),
+            overflowed: false,
+        }
+    }
+
+    fn bytes(&self) -> u64 {
+        self.staged.bytes() + self.start.bytes() + self.control.bytes()
     }
 }

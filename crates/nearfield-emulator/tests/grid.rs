@@ -1,7 +1,7 @@
 //! Cells and testing all pairs find the neighbours of the reference, whatever the system.
 
 use nearfield_conformance::cases::{self, Case};
-use nearfield_core::{ListKind, NeighborList, Radii, System, oracle};
+use nearfield_core::{Boundary, ListKind, NeighborList, Radii, System, oracle};
 use nearfield_cuda::{
     Buffer, DeviceList, Gpu,
     grid::{self, Candidates, ForceQuery, Grid, ListQuery, Pairs, Survey},
@@ -145,11 +145,16 @@ impl Device {
         out
     }
 
-    fn list(&self, cells: bool, kind: ListKind) -> NeighborList {
+    fn list_on_device(&self, cells: bool, kind: ListKind, images: bool) -> DeviceList {
         let mut list = DeviceList::new(&self.gpu);
-        let query = ListQuery { law: self.law, space: self.space, id: self.id.ptr(), kind, images: true };
+        let query = ListQuery { law: self.law, space: self.space, id: self.id.ptr(), kind, images };
         // SAFETY: every input index is there once.
         unsafe { grid::list(&*self.gpu, self.candidates(cells), &query, &mut list) }.unwrap();
+        list
+    }
+
+    fn list(&self, cells: bool, kind: ListKind) -> NeighborList {
+        let list = self.list_on_device(cells, kind, true);
         let image = |c: u8| [(c % 3) as i8 - 1, (c / 3 % 3) as i8 - 1, (c / 9) as i8 - 1];
         NeighborList {
             kind,
@@ -159,6 +164,17 @@ impl Device {
             distances: None,
         }
     }
+}
+
+/// Sorted rows.
+fn rows(list: &DeviceList) -> Vec<Vec<u32>> {
+    let (offsets, indices) = (list.offset.download().unwrap(), list.index.download().unwrap());
+    let row = |ends: &[u64]| {
+        let mut row = indices[ends[0] as usize..ends[1] as usize].to_vec();
+        row.sort_unstable();
+        row
+    };
+    offsets.windows(2).map(row).collect()
 }
 
 fn systems() -> Vec<Case> {
@@ -208,6 +224,39 @@ fn lists_are_those_of_the_reference() {
             }
         }
     }
+}
+
+#[test]
+#[cfg_attr(not(host_compiler), ignore = "no C++ compiler")]
+fn lists_found_by_one_search_hold_what_those_found_by_two_do() {
+    let mut n_at_once = 0;
+    for Case { name, system } in systems() {
+        let device = Device::new(&system);
+        for kind in [ListKind::Full, ListKind::Half] {
+            let list = device.list_on_device(true, kind, false);
+            n_at_once += usize::from(list.at_once);
+            assert_eq!(rows(&list), rows(&device.list_on_device(true, kind, true)), "{name}, {kind:?}");
+        }
+    }
+    assert!(n_at_once > 10, "{n_at_once} lists were found by one search");
+}
+
+#[test]
+#[cfg_attr(not(host_compiler), ignore = "no C++ compiler")]
+fn a_list_with_rows_longer_than_expected_is_found_by_two_searches() {
+    // A clump of 120 among 4000 that have hardly any neighbours.
+    let sim_box = cases::cube(100.0, [Boundary::Periodic; 3]);
+    let mut positions = cases::uniform(4000, &sim_box, 1);
+    for (i, position) in positions[..120].iter_mut().enumerate() {
+        *position = [50.0 + 0.001 * i as f32, 50.0, 50.0];
+    }
+    let system = cases::soft(sim_box, positions, Radii::Uniform(1.0));
+    let device = Device::new(&system);
+    let list = device.list_on_device(true, ListKind::Full, false);
+    assert!(!list.at_once);
+    let rows = rows(&list);
+    assert!(rows[..120].iter().all(|row| row.len() >= 119));
+    assert_eq!(rows.iter().map(|row| row.len() as u32).collect::<Vec<_>>(), expected_counts(&system));
 }
 
 #[test]

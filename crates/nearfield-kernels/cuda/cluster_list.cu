@@ -1,6 +1,7 @@
 // Builds lists of clusters, and tells whether and how long they serve.
 
 #include "listed.cuh"
+#include "particles.cuh"
 
 // Entries that a warp keeps before it writes them, all but the last chunk full.
 #define STAGE (SEGMENT_ENTRIES + WARP)
@@ -155,9 +156,8 @@ KERNEL(begin_steps, ClusterControlArgs, 32) {
     c.lists = c.longest = c.dangerous = 0;
 }
 
-KERNEL(begin_list, ClusterControlArgs, 32) {
-    if (thread_index() != 0) return;
-    ClusterControl& c = *a.control;
+// Notes how the list has served, and that there is none now.
+__device__ inline void end_list(ClusterControl& c) {
     const u32 served = (u32)(c.next - c.first);
     if (served > 0) {
         ++c.lists;
@@ -167,6 +167,20 @@ KERNEL(begin_list, ClusterControlArgs, 32) {
     c.first = c.next;
     c.rebuild_at = ~0ull;
     c.chunks = c.segments = 0;
+}
+
+KERNEL(begin_list, ClusterControlArgs, 32) {
+    if (thread_index() == 0) end_list(*a.control);
+}
+
+// Where they were just sorted, particles hardly move: writes are nearly in order.
+KERNEL(sort_particles, SortParticlesArgs, 256) {
+    const u32 i = thread_index();
+    if (i == 0) end_list(*a.control);
+    if (i >= a.sort.n) return;
+    const u32 slot = take_slot(a.sort, i);
+    a.sort.grid.slot[slot] = a.from.position[i];
+    copy_particle(a.from, i, a.to, slot, a.place);
 }
 
 KERNEL(clusters_moved, ClustersMovedArgs, 256) {

@@ -33,12 +33,13 @@ KERNEL(pairs_any_energy, ListedArgs, WARPS_PER_BLOCK* WARP) {
 }
 
 template <bool NOISE> __device__ inline void move_all(const ClusterStepArgs& a) {
-    if (!begin_step(a)) return;
     const u32 i = thread_index();
     if (i >= a.particles.n) return;
+    // All that is read is on its way before anything is waited for.
     float4& sum = a.listed.gather.results.force[i];
     const float4 force = sum, reference = a.reference[i];
     const Moving p = load_moving(a.particles, i);
+    if (!begin_step(a)) return;
     sum = make_float4(0.0f, 0.0f, 0.0f, 0.0f);
     move_particle<NOISE>(a, i, p, force, reference);
 }

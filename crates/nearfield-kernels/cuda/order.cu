@@ -1,6 +1,7 @@
 // Memory order: keys along a curve, and particles moved to where a sort puts them.
 
 #include "integrate.cuh"
+#include "particles.cuh"
 #include "sums.cuh"
 
 namespace {
@@ -73,13 +74,9 @@ KERNEL(sample, SampleArgs, 256) {
 KERNEL(permute, PermuteArgs, 256) {
     const u32 k = thread_index();
     if (k >= a.from.n) return;
-    const u32 i = a.order[k], id = a.from.id[i];
-    a.to.position[k] = a.from.position[i];
-    a.to.velocity[k] = a.from.velocity[i];
-    for (int axis = 0; axis < 3; ++axis) a.to.image[3 * (u64)k + axis] = a.from.image[3 * (u64)i + axis];
-    a.to.id[k] = id;
+    const u32 i = a.order[k];
+    copy_particle(a.from, i, a.to, k, a.place);
     if (a.force[0]) a.force[1][k] = a.force[0][i];
-    a.place[id] = k;
 }
 
 // Order-independent sums as numbers.

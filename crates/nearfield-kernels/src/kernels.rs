@@ -4,9 +4,9 @@ use crate::{
     ByForce, ByMotion, Kernel, Primitive, RayProgram,
     layouts::{
         AdvanceRays, BodiesArgs, BoundsArgs, BoxesArgs, CellStepArgs, ClusterControlArgs, ClusterListArgs,
-        ClusterStepArgs, ClustersMovedArgs, FinishExactArgs, FirstStepArgs, ForceRays, GatherArgs, IntegrateArgs,
-        ListArgs, ListRays, ListedArgs, MortonArgs, MotionArgs, NumberArgs, PermuteArgs, QueryArgs, RescaleArgs,
-        RowsArgs, SampleArgs, ScanArgs, SortArgs, TotalsArgs,
+        ClusterStepArgs, ClustersMovedArgs, CopyRowsArgs, FinishExactArgs, FirstStepArgs, ForceRays, GatherArgs,
+        IntegrateArgs, ListArgs, ListRays, ListedArgs, MortonArgs, MotionArgs, NumberArgs, PermuteArgs, QueryArgs,
+        RescaleArgs, RowsArgs, SampleArgs, ScanArgs, SortArgs, SortParticlesArgs, StageArgs, TotalsArgs,
     },
 };
 
@@ -87,6 +87,8 @@ pub const SEGMENT: usize = 15;
 pub const BEGIN_STEPS: Kernel<ClusterControlArgs> = Kernel::new("cluster_list", "begin_steps", 32);
 /// Notes how the list has served, and that there is none now.
 pub const BEGIN_LIST: Kernel<ClusterControlArgs> = Kernel::new("cluster_list", "begin_list", 32);
+/// The same, and particles in the order of cells: in place of [`CELL_SCATTER`] and [`PERMUTE`]. A thread at least.
+pub const SORT_PARTICLES: Kernel<SortParticlesArgs> = Kernel::new("cluster_list", "sort_particles", 256);
 /// Whether lists serve the present positions.
 pub const CLUSTERS_MOVED: Kernel<ClustersMovedArgs> = Kernel::new("cluster_list", "clusters_moved", 256);
 
@@ -147,6 +149,15 @@ pub const CELL_LIST: ListKernels = ListKernels {
     count: Kernel::new("lists", "cell_list_count", 128),
     fill: Kernel::new("lists", "cell_list_fill", 128),
 };
+/// The same lists of short rows, each found once: rows wherever there is room, then at their places.
+pub const CELL_LIST_STAGE: Kernel<StageArgs> = Kernel::new("staged_lists", "cell_list_stage", 128);
+/// Most entries of a row that is staged.
+pub const STAGED_ROW: usize = 80;
+/// Rows to their places; [`ROW_LANES`] threads for each.
+pub const COPY_ROWS: Kernel<CopyRowsArgs> = Kernel::new("staged_lists", "copy_rows", 256);
+/// Threads to a row.
+pub const ROW_LANES: usize = 8;
+
 /// Lists from candidates in cells where radii are per particle.
 pub const CELL_LIST_RADII: ListKernels = ListKernels {
     count: Kernel::new("lists", "cell_list_count_radii", 128),

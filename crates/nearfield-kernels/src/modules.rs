@@ -35,6 +35,7 @@ pub const MODULES: &[Module] = modules![
     "order",
     "queries",
     "scan",
+    "staged_lists",
     "cells",
     "brute",
     "cell_forces",

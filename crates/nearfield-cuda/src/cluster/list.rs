@@ -137,25 +137,15 @@ impl ClusterList {
         };
         // SAFETY: the arrays have n elements each.
         unsafe { launch(&*self.gpu, kernels::CLUSTERS_MOVED, state.len() as u64, &arguments)? };
-        Ok(self.control()?.rebuild_at > 0)
+        Ok(self.read_control()?.rebuild_at > 0)
     }
 
-    /// Enqueues the listing of what is near each cluster of particles in the order of `grid`, which was built for range
-    /// and skin; each pair `once` or from both sides. Whether there was room for it is seen later: by
-    /// [`ClusterList::settle`], or at the end of steps.
-    pub fn build(
-        &mut self,
-        physics: &Physics,
-        state: &State,
-        grid: &Grid,
-        once: bool,
-        budget: u64,
-        report: &mut Report,
-    ) -> Result<()> {
+    /// Makes room for a list of positions that the one before does not serve; each pair `once` or from both sides. To be
+    /// called before [`ClusterList::enqueue`].
+    pub fn prepare(&mut self, state: &State, once: bool, budget: u64, report: &mut Report) -> Result<()> {
         self.once = once;
         let first = state.len().div_ceil(CLUSTER) as u64 * FIRST_CHUNKS[usize::from(!once)];
         self.make_room(state, self.room().max(first).min(budget / BYTES_PER_CHUNK))?;
-        self.enqueue(&*self.gpu, physics, state, grid)?;
         report.list_builds += 1;
         if self.served == 1 && self.skin > 0.0 && report.list_builds > 1 {
             report.dangerous_builds += 1;
@@ -165,11 +155,16 @@ impl ClusterList {
         Ok(())
     }
 
+    /// For who sorts the particles, which ends the list.
+    pub fn control(&self) -> Ptr<ClusterControl> {
+        self.control.ptr()
+    }
+
     /// Waits for the list that is being built and builds it again where there was no room; gives whether it fits the
     /// budget.
     pub fn settle(&mut self, physics: &Physics, state: &State, grid: &Grid, budget: u64) -> Result<bool> {
         while !self.settled {
-            let needed = u64::from(self.control()?.chunks);
+            let needed = u64::from(self.read_control()?.chunks);
             if needed * BYTES_PER_CHUNK > budget {
                 self.entry.resize(0)?;
                 self.valid = false;
@@ -180,6 +175,9 @@ impl ClusterList {
             if !self.settled {
                 // Lists of other moments may be longer.
                 self.make_room(state, (needed + needed / 8).min(budget / BYTES_PER_CHUNK))?;
+                let control = ClusterControlArgs { control: self.control(), ..Default::default() };
+                // SAFETY: the list has a control block.
+                unsafe { launch(&*self.gpu, kernels::BEGIN_LIST, 1, &control)? };
                 self.enqueue(&*self.gpu, physics, state, grid)?;
             }
         }
@@ -197,10 +195,11 @@ impl ClusterList {
         self.control.resize(1)
     }
 
-    /// Enqueues the listing in the room that there is; see [`ClusterList::build`].
+    /// Enqueues the listing of what is near each cluster of particles, which were just put in the order of `grid`, that was
+    /// counted for range and skin. Whether there was room for it is seen later: by [`ClusterList::settle`], or at the end
+    /// of steps.
     pub fn enqueue(&self, queue: &dyn Queue, physics: &Physics, state: &State, grid: &Grid) -> Result<()> {
         let n_clusters = state.len().div_ceil(CLUSTER);
-        let control = ClusterControlArgs { control: self.control.ptr(), ..Default::default() };
         let arguments = ClusterListArgs {
             law: Law { cutoff: physics.law.cutoff + self.skin, ..physics.law },
             space: physics.space,
@@ -218,10 +217,7 @@ impl ClusterList {
             unused: 0,
         };
         // SAFETY: positions are n, sorted by the grid's cells; segments and entries have room for what is said.
-        unsafe {
-            launch(queue, kernels::BEGIN_LIST, 1, &control)?;
-            launch(queue, kernels::LIST_CLUSTERS, 32 * n_clusters as u64, &arguments)
-        }
+        unsafe { launch(queue, kernels::LIST_CLUSTERS, 32 * n_clusters as u64, &arguments) }
     }
 
     /// Whether forces are added to: they must be zero before.
@@ -260,8 +256,8 @@ impl ClusterList {
         unsafe { launch(&*self.gpu, kernels::BEGIN_STEPS, 1, &arguments) }
     }
 
-    /// Enqueues so many steps from forces at the present positions on, one more where that is odd, of which those are done
-    /// that the list serves for and that are not beyond the end.
+    /// Enqueues so many steps, or one more, from forces at the present positions on, of which those are done that the list
+    /// serves for and that are not beyond the end.
     pub fn enqueue_steps(&self, queue: &dyn Queue, query: &StepQuery, grid: &Grid, steps: u64) -> Result<()> {
         let StepQuery { physics, state, spare, integrator, status } = query;
         let n = state.len() as u64;
@@ -282,7 +278,8 @@ impl ClusterList {
             unused: 0,
         };
         // Positions that go to and fro are back after two steps.
-        for index in 0..steps.next_multiple_of(2) as u32 {
+        let steps = steps.next_multiple_of(if self.once { 1 } else { 2 });
+        for index in 0..steps as u32 {
             arguments.listed.index = index;
             if self.once {
                 add_pairs(queue, LISTED_PAIRS.choose(&physics.law, false, false), &arguments.listed)?;
@@ -303,7 +300,7 @@ impl ClusterList {
 
     /// Waits for the steps that were begun at `step`.
     pub fn finish_steps(&mut self, step: u64) -> Result<Outcome> {
-        let control = self.control()?;
+        let control = self.read_control()?;
         self.settled = u64::from(control.chunks) <= self.room();
         let (made, by_last) = (control.next - step, control.next - control.first);
         self.served = if control.lists > 0 { by_last } else { self.served + by_last };
@@ -340,7 +337,7 @@ impl ClusterList {
         }
     }
 
-    fn control(&self) -> Result<ClusterControl> {
+    fn read_control(&self) -> Result<ClusterControl> {
         Ok(self.control.download()?.pop().unwrap_or_else(ClusterControl::zeroed))
     }
 

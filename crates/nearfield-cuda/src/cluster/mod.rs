@@ -12,6 +12,7 @@ pub(crate) use list::StepQuery;
 use crate::{
     Buffer, Gpu,
     engine::{physics::Physics, state::State, survey::Sample},
+    gpu::Queue,
     grid::{self, Candidates, CellPlan, ForceQuery, Grid, Pairs, Survey},
 };
 use list::ClusterList;
@@ -75,15 +76,24 @@ impl Clusters {
 
     /// Sorts the particles by cell and lists what is near them, or only sorts them.
     pub(crate) fn build(&mut self, physics: &Physics, state: &mut State, report: &mut Report) -> Result<()> {
-        // SAFETY: the state's positions are n.
-        unsafe { self.grid.build(&*self.gpu, state.moving.position.ptr(), state.len(), physics.law.variable != 0)? };
         if !self.variant.uses_list() {
-            return Ok(());
+            let (position, variable) = (state.moving.position.ptr(), physics.law.variable != 0);
+            // SAFETY: the state's positions are n.
+            return unsafe { self.grid.build(&*self.gpu, position, state.len(), variable) };
         }
-        // Nothing needs the forces any more: they are of positions before.
-        state.permute(&*self.gpu, self.grid.order().ptr(), &mut Buffer::new(&self.gpu, "forces"))?;
         let once = self.variant == Variant::List && !self.deterministic;
-        self.list.build(physics, state, &self.grid, once, self.memory_budget, report)
+        self.list.prepare(state, once, self.memory_budget, report)?;
+        let gpu = self.gpu.clone();
+        self.enqueue_list(&*gpu, physics, state)
+    }
+
+    /// Enqueues a list of the present positions, which puts the particles in the order of the cells. Nothing needs the
+    /// forces any more: they are of positions before.
+    fn enqueue_list(&mut self, queue: &dyn Queue, physics: &Physics, state: &mut State) -> Result<()> {
+        // SAFETY: the state's positions are n.
+        let sort = unsafe { self.grid.count(queue, state.moving.position.ptr(), state.len(), false)? };
+        state.sort(queue, sort, self.list.control())?;
+        self.list.enqueue(queue, physics, state, &self.grid)
     }
 
     /// Makes sure that there is a list where there is to be one, or turns to pairs where it would exceed the budget. To

@@ -9,6 +9,9 @@ const MOST_STEPS: u64 = 200;
 /// Most lists between waits: where the device runs out of room for one, nothing is done in those after it.
 const MOST_LISTS: u64 = 64;
 
+/// Steps beyond the last are not done, but cost less than a sequence that was not enqueued before.
+const FEW: u64 = 8;
+
 /// What lists have served for lately.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pace {
@@ -50,7 +53,7 @@ impl Pace {
         if lists > self.lists {
             return Stretch { lists: self.lists, steps: self.steps, rest: 0 };
         }
-        Stretch { lists, steps: self.steps, rest: self.steps.min(wanted).max(1) }
+        Stretch { lists, steps: self.steps, rest: self.steps.min(wanted.max(1).next_multiple_of(FEW)) }
     }
 
     /// A step beyond those that the longest has served for costs less than a list that comes a step early.
@@ -99,14 +102,14 @@ mod tests {
         let pace = after(7, 10);
         assert_eq!(pace.stretch(1_000_000), Stretch { lists: MOST_LISTS, steps: 8, rest: 0 });
         assert_eq!(pace.stretch(100), Stretch { lists: 14, steps: 8, rest: 8 });
-        assert_eq!(pace.stretch(3), Stretch { lists: 0, steps: 8, rest: 3 });
-        assert_eq!(pace.stretch(0), Stretch { lists: 0, steps: 8, rest: 1 });
+        assert_eq!(pace.stretch(3), Stretch { lists: 0, steps: 8, rest: 8 });
+        assert_eq!(pace.stretch(0), Stretch { lists: 0, steps: 8, rest: 8 });
         assert_eq!(Pace::new().stretch(1000), Stretch { lists: 1, steps: 8, rest: 0 });
     }
 
     #[test]
     fn a_list_that_never_ends_is_not_made_anew_for_few_steps() {
         let pace = after(100_000, 20);
-        assert_eq!(pace.stretch(100), Stretch { lists: 0, steps: MOST_STEPS, rest: 100 });
+        assert_eq!(pace.stretch(100), Stretch { lists: 0, steps: MOST_STEPS, rest: 104 });
     }
 }

@@ -5,9 +5,12 @@ use super::{
     list::StepQuery,
     pace::{Served, Stretch},
 };
-use crate::{Buffer, Sequence};
+use crate::Sequence;
 use nearfield_core::{Report, Result};
 use std::ops::Range;
+
+/// Lists to a sequence: particles are then in the memory that they were in before, and so the next one is the same.
+const LISTS: usize = 2;
 
 impl Clusters {
     /// Makes steps from forces at the first of `steps` on, whose positions the list serves, and none beyond the last; waits
@@ -25,10 +28,12 @@ impl Clusters {
         }
         let stretch = self.pace.stretch(steps.end.min(replan).saturating_sub(steps.start));
         self.list.begin_steps(&mut query, steps.start, steps.end)?;
-        for _ in 0..stretch.lists {
+        for first in (0..stretch.lists).step_by(LISTS) {
             let sequence = Sequence::default();
-            self.list.enqueue_steps(&sequence, &query, &self.grid, stretch.steps)?;
-            self.enqueue_list(&sequence, &mut query)?;
+            for _ in first..stretch.lists.min(first + LISTS as u64) {
+                self.list.enqueue_steps(&sequence, &query, &self.grid, stretch.steps)?;
+                self.enqueue_list(&sequence, query.physics, query.state)?;
+            }
             // SAFETY: all arrays have their size and keep it until the steps have been waited for.
             unsafe { self.gpu.run(&sequence)? };
         }
@@ -39,15 +44,6 @@ impl Clusters {
             unsafe { self.gpu.run(&sequence)? };
         }
         self.finish_steps(query, steps.start, stretch, report)
-    }
-
-    /// Enqueues a list for the positions that steps lead to.
-    fn enqueue_list(&mut self, sequence: &Sequence, query: &mut StepQuery) -> Result<()> {
-        let StepQuery { physics, state, .. } = query;
-        // SAFETY: the state's positions are n.
-        unsafe { self.grid.build(sequence, state.moving.position.ptr(), state.len(), false)? };
-        state.permute(sequence, self.grid.order().ptr(), &mut Buffer::new(&self.gpu, "forces"))?;
-        self.list.enqueue(sequence, physics, state, &self.grid)
     }
 
     fn finish_steps(&mut self, query: StepQuery, first: u64, stretch: Stretch, report: &mut Report) -> Result<u64> {

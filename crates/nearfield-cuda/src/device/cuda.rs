@@ -28,8 +28,9 @@ use std::{
 pub struct CudaDevice {
     context: Arc<CudaContext>,
     stream: Arc<CudaStream>,
-    loaded: Mutex<Loaded>,
+    // Before the kernels that they launch, for these must not go first.
     graphs: Mutex<Graphs>,
+    loaded: Mutex<Loaded>,
     /// OptiX, or why there is none, once somebody has asked.
     tracing: OnceLock<std::result::Result<Optix, String>>,
 }
@@ -57,7 +58,7 @@ impl CudaDevice {
     }
 
     fn with_stream(context: Arc<CudaContext>, stream: Arc<CudaStream>) -> Self {
-        Self { context, stream, loaded: Mutex::default(), graphs: Mutex::default(), tracing: OnceLock::new() }
+        Self { context, stream, graphs: Mutex::default(), loaded: Mutex::default(), tracing: OnceLock::new() }
     }
 
     /// Makes the context the calling thread's: engines may move between threads.
@@ -196,8 +197,8 @@ impl Gpu for CudaDevice {
         let mut graphs = self.graphs.lock().unwrap_or_else(PoisonError::into_inner);
         let kernel = |module, name| self.kernel(module, name).ok().map(|kernel| kernel.cu_function());
         // SAFETY: the caller's promise. Where the driver refuses a graph, the parts are launched one by one.
-        let make = |parts: &[Part]| Ok(unsafe { Graph::new(parts, &self.context, kernel) }.ok());
-        match graphs.of(sequence, make, || self.synchronize())? {
+        let make = |parts: &[Part]| unsafe { Graph::new(parts, &self.context, kernel) }.ok();
+        match graphs.of(sequence, make) {
             // SAFETY: the caller's promise.
             Some(graph) => unsafe { graph.launch(stream) }.map_err(failed("launching a graph")),
             // SAFETY: as above.

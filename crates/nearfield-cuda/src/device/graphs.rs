@@ -37,30 +37,22 @@ impl Graphs {
     }
 
     /// The graph of a sequence, by `make` where it comes for the second time; none the first time or where the driver
-    /// refuses: the sequence is then to be enqueued part by part. Before a graph is forgotten, `wait` is called.
-    pub fn of<E>(
-        &mut self,
-        sequence: &Sequence,
-        make: impl FnOnce(&[Part]) -> Result<Option<Graph>, E>,
-        wait: impl FnOnce() -> Result<(), E>,
-    ) -> Result<Option<&Graph>, E> {
+    /// refuses: the sequence is then to be enqueued part by part.
+    pub fn of(&mut self, sequence: &Sequence, make: impl FnOnce(&[Part]) -> Option<Graph>) -> Option<&Graph> {
         let Some(at) = self.0.iter().rposition(|remembered| remembered.sequence == *sequence) else {
             if self.0.len() == REMEMBERED {
-                if self.0[0].graph.is_some() {
-                    wait()?;
-                }
                 self.0.remove(0);
             }
             self.0.push(Remembered { sequence: sequence.clone(), graph: None, refused: false });
-            return Ok(None);
+            return None;
         };
         self.0[at..].rotate_left(1);
-        let Some(remembered) = self.0.last_mut() else { return Ok(None) };
+        let remembered = self.0.last_mut()?;
         if remembered.graph.is_none() && !remembered.refused {
-            remembered.graph = make(&sequence.parts())?;
+            remembered.graph = make(&sequence.parts());
             remembered.refused = remembered.graph.is_none();
         }
-        Ok(remembered.graph.as_ref())
+        remembered.graph.as_ref()
     }
 }
 
@@ -109,7 +101,7 @@ impl Drop for Graph {
     fn drop(&mut self) {
         // A device that fails here has failed before.
         if self.context.bind_to_thread().is_ok() {
-            // SAFETY: the graph is valid and used by nobody else.
+            // SAFETY: the graph is valid and used by nobody else; the driver frees it once it does not run any more.
             let _ = unsafe { graph::exec_destroy(self.exec) };
         }
     }

@@ -7,7 +7,7 @@ use crate::{
 use nearfield_core::{Error, Particles, Radii, Result, System};
 use nearfield_kernels::{
     Float4, Ptr, kernels,
-    layouts::{self, PermuteArgs},
+    layouts::{self, ClusterControl, PermuteArgs, SortArgs, SortParticlesArgs},
 };
 use std::sync::Arc;
 
@@ -110,19 +110,9 @@ impl State {
 
     /// Puts particle `order[k]` at place k, forces too where there are any.
     pub fn permute(&mut self, queue: &dyn Queue, order: Ptr<u32>, force: &mut Buffer<Float4>) -> Result<()> {
-        let n = self.len();
-        self.spare.resize(n)?;
-        self.spare_id.resize(n)?;
         let mut sorted_force = Buffer::new(&self.gpu, "forces");
         sorted_force.resize(force.len())?;
-        let to = layouts::Particles {
-            position: self.spare.position.ptr(),
-            velocity: self.spare.velocity.ptr(),
-            image: self.spare.image.ptr(),
-            id: self.spare_id.ptr(),
-            n: n as u32,
-            unused: 0,
-        };
+        let to = self.spare_particles()?;
         let arguments = PermuteArgs {
             from: self.particles(),
             to,
@@ -131,11 +121,42 @@ impl State {
             place: self.place.ptr(),
         };
         // SAFETY: all arrays have n elements, forces n or none; `order` is the caller's permutation of n.
-        unsafe { launch(queue, kernels::PERMUTE, n as u64, &arguments)? };
-        std::mem::swap(&mut self.moving, &mut self.spare);
-        std::mem::swap(&mut self.id, &mut self.spare_id);
+        unsafe { launch(queue, kernels::PERMUTE, self.len() as u64, &arguments)? };
+        self.take_spare();
         *force = sorted_force;
         Ok(())
+    }
+
+    /// Puts particles in the order of cells, by a sort of their positions that has been counted, and ends the list of
+    /// `control`.
+    pub fn sort(&mut self, queue: &dyn Queue, sort: SortArgs, control: Ptr<ClusterControl>) -> Result<()> {
+        let to = self.spare_particles()?;
+        let arguments = SortParticlesArgs { sort, from: self.particles(), to, place: self.place.ptr(), control };
+        // SAFETY: all arrays have n elements.
+        unsafe { launch(queue, kernels::SORT_PARTICLES, self.len().max(1) as u64, &arguments)? };
+        self.take_spare();
+        Ok(())
+    }
+
+    /// Where particles can be put.
+    fn spare_particles(&mut self) -> Result<layouts::Particles> {
+        let n = self.len();
+        self.spare.resize(n)?;
+        self.spare_id.resize(n)?;
+        Ok(layouts::Particles {
+            position: self.spare.position.ptr(),
+            velocity: self.spare.velocity.ptr(),
+            image: self.spare.image.ptr(),
+            id: self.spare_id.ptr(),
+            n: n as u32,
+            unused: 0,
+        })
+    }
+
+    /// What was put there are the particles from now on.
+    fn take_spare(&mut self) {
+        std::mem::swap(&mut self.moving, &mut self.spare);
+        std::mem::swap(&mut self.id, &mut self.spare_id);
     }
 
     /// Copies positions, velocities, types and image counts to the host in input order.

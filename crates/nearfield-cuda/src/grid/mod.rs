@@ -5,6 +5,7 @@ mod bulk;
 mod classes;
 mod plan;
 mod query;
+mod staged;
 mod steps;
 mod width;
 
@@ -31,6 +32,8 @@ pub struct Grid {
     plan: CellPlan,
     n: usize,
     count: Buffer<u32>,
+    /// Number of counts that are zero between builds.
+    clean: usize,
     start: Buffer<u32>,
     cell: Buffer<u32>,
     rank: Buffer<u32>,
@@ -47,6 +50,7 @@ impl Grid {
             plan: CellPlan::default(),
             n: 0,
             count: buffer(),
+            clean: 0,
             start: buffer(),
             cell: buffer(),
             rank: buffer(),
@@ -67,7 +71,8 @@ impl Grid {
         self.plan.is_much_as(&before)
     }
 
-    /// Enqueues the sorting of `n` particles by the cells of [`Grid::plan`], which must have been called. `variable`: radii are in w.
+    /// Enqueues the sorting of `n` particles by the cells of [`Grid::plan`], which must have been called. `variable`: radii
+    /// are in w.
     ///
     /// # Safety
     /// `position` is the address of `n` positions.
@@ -75,30 +80,57 @@ impl Grid {
     /// # Errors
     /// As [`Gpu::allocate`] and [`Queue::launch`].
     pub unsafe fn build(&mut self, queue: &dyn Queue, position: Ptr<Float4>, n: usize, variable: bool) -> Result<()> {
+        // SAFETY: the caller's promise.
+        let sort = unsafe { self.count(queue, position, n, variable)? };
+        // SAFETY: as of the count.
+        unsafe { launch(queue, kernels::CELL_SCATTER, n as u64, &sort) }
+    }
+
+    /// The same but for the particles' slots, which who takes the arguments is to give them: by [`kernels::CELL_SCATTER`] or
+    /// a kernel of its own.
+    ///
+    /// # Safety
+    /// As [`Grid::build`].
+    ///
+    /// # Errors
+    /// As [`Grid::build`].
+    pub(crate) unsafe fn count(
+        &mut self,
+        queue: &dyn Queue,
+        position: Ptr<Float4>,
+        n: usize,
+        variable: bool,
+    ) -> Result<SortArgs> {
         self.n = n;
         for buffer in [&mut self.cell, &mut self.rank, &mut self.particle] {
             buffer.resize(n)?;
         }
         self.slot.resize(n)?;
         self.count.resize_with_room(self.plan.n_cells)?;
-        self.count.zero_by(queue)?;
+        if self.plan.n_cells > self.clean {
+            self.count.zero_by(queue)?;
+            self.clean = self.plan.n_cells;
+        }
+        let tiles = self.scan.state(self.plan.n_cells)?;
+        let (tiles, n_tiles) = (tiles.ptr(), tiles.len() as u32);
         self.start.resize_with_room(self.plan.n_cells + 1)?;
         let arguments = SortArgs {
             grid: self.layout(),
             count: self.count.ptr(),
+            tiles,
             position,
             cell: self.cell.ptr(),
             rank: self.rank.ptr(),
             n: n as u32,
             variable: u32::from(variable),
+            n_tiles,
+            unused: 0,
         };
         // SAFETY: arrays of n particles, of all cells, and one more for their starts; kernels keep within the cells
         // whatever the positions.
-        unsafe {
-            launch(queue, kernels::CELL_COUNT, n as u64, &arguments)?;
-            self.scan.run(queue, &self.count, &mut self.start)?;
-            launch(queue, kernels::CELL_SCATTER, n as u64, &arguments)
-        }
+        unsafe { launch(queue, kernels::CELL_COUNT, n.max(1) as u64, &arguments)? };
+        self.scan.run_from_zero(queue, &self.count, &mut self.start)?;
+        Ok(arguments)
     }
 
     /// Addresses for kernels.

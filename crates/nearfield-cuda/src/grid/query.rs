@@ -1,6 +1,6 @@
 //! Forces and neighbour lists, by cells or by testing all pairs.
 
-use super::Grid;
+use super::{Grid, staged};
 use crate::{
     DeviceList,
     gpu::{Queue, launch},
@@ -49,7 +49,7 @@ impl Candidates<'_> {
     }
 
     /// One warp for each cluster; clusters do not straddle classes.
-    fn threads(&self) -> u64 {
+    pub(super) fn threads(&self) -> u64 {
         let partial = self.layout().n_classes.saturating_sub(1);
         32 * (self.n().div_ceil(CLUSTER) as u64 + u64::from(partial))
     }
@@ -141,15 +141,29 @@ pub struct ListQuery {
 pub unsafe fn count(queue: &dyn Queue, candidates: Candidates, query: &ListQuery, list: &mut DeviceList) -> Result<()> {
     list.start(candidates.n())?;
     if let Candidates::Cells(grid) = candidates {
-        list.number.resize(grid.n)?;
-        let (particle, id, number) = (grid.particle.ptr(), query.id, list.number.ptr());
-        let arguments = NumberArgs { particle, id, number, n: grid.n as u32, unused: 0 };
-        // SAFETY: the caller's promise, and a number for each slot.
-        unsafe { launch(queue, kernels::NUMBER_SLOTS, grid.n as u64, &arguments)? };
+        // SAFETY: the caller's promise.
+        unsafe { number_slots(queue, grid, query, list)? };
     }
     let kernel = list_kernels(candidates, query).count;
     // SAFETY: the caller's promise, and a count for each row.
     unsafe { launch(queue, kernel, candidates.threads(), &arguments(candidates, query, list)) }
+}
+
+/// Enqueues the input indices of slots.
+///
+/// # Safety
+/// As [`count`].
+pub(super) unsafe fn number_slots(
+    queue: &dyn Queue,
+    grid: &Grid,
+    query: &ListQuery,
+    list: &mut DeviceList,
+) -> Result<()> {
+    list.number.resize(grid.n)?;
+    let (particle, id, number) = (grid.particle.ptr(), query.id, list.number.ptr());
+    let arguments = NumberArgs { particle, id, number, n: grid.n as u32, unused: 0 };
+    // SAFETY: the caller's promise, and a number for each slot.
+    unsafe { launch(queue, kernels::NUMBER_SLOTS, grid.n as u64, &arguments) }
 }
 
 /// Lists the neighbours of all particles, by input index; waits for the device once, to know how many there are.
@@ -160,6 +174,11 @@ pub unsafe fn count(queue: &dyn Queue, candidates: Candidates, query: &ListQuery
 /// # Errors
 /// As [`count`].
 pub unsafe fn list(queue: &dyn Queue, candidates: Candidates, query: &ListQuery, list: &mut DeviceList) -> Result<()> {
+    // SAFETY: the caller's promise.
+    list.at_once = matches!(candidates, Candidates::Cells(grid) if unsafe { staged::list(queue, grid, query, list)? });
+    if list.at_once {
+        return Ok(());
+    }
     // SAFETY: the caller's promise.
     unsafe { count(queue, candidates, query, list)? };
     let entries = list.place_rows()?;
@@ -178,7 +197,7 @@ fn list_kernels(candidates: Candidates, query: &ListQuery) -> ListKernels {
     }
 }
 
-fn arguments(candidates: Candidates, query: &ListQuery, list: &DeviceList) -> ListArgs {
+pub(super) fn arguments(candidates: Candidates, query: &ListQuery, list: &DeviceList) -> ListArgs {
     ListArgs {
         law: query.law,
         space: query.space,

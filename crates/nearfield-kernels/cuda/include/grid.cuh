@@ -35,6 +35,13 @@ __device__ inline u32 cell_of(const CellClass& c, const float4& p) {
     return first_of_cells(c, row_number(c, cell_coordinate(c, 1, p.y), cell_coordinate(c, 2, p.z)), x, x);
 }
 
+// Slot of a particle in a sort that has been counted and scanned; its cell is then counted from zero again.
+__device__ inline u32 take_slot(const SortArgs& a, u32 i) {
+    const u32 cell = a.cell[i];
+    a.count[cell] = 0;
+    return a.grid.cell_start[cell] + a.rank[i];
+}
+
 // Place of a slot's particle; slots are places where nothing has been sorted.
 __device__ inline u32 place_of(const Grid& grid, u32 slot) {
     return grid.particle ? grid.particle[slot] : slot;

@@ -342,8 +342,10 @@ static_assert(sizeof(Grid) == 544, "Grid differs between host and device");
 struct SortArgs {
     // Cells to sort into.
     Grid grid;
-    // Particles in each cell, counted from zero.
+    // Particles in each cell: counted from zero, and zero again once all have their slots.
     u32 *count;
+    // State of the scan between the two, zeroed by the count, `[n_tiles]`.
+    u64 *tiles;
     // Positions, with radii in w where `variable`.
     float4 *position;
     // Cell of each particle, written by the count.
@@ -354,8 +356,12 @@ struct SortArgs {
     u32 n;
     // 1 where radii are per particle.
     u32 variable;
+    // Length of that state.
+    u32 n_tiles;
+    // Zero.
+    u32 unused;
 };
-static_assert(sizeof(SortArgs) == 584, "SortArgs differs between host and device");
+static_assert(sizeof(SortArgs) == 600, "SortArgs differs between host and device");
 
 // Arguments of `scan_u32` and `scan_u64`: exclusive prefix sums in one pass with look-back.
 struct ScanArgs {
@@ -463,6 +469,49 @@ struct ListArgs {
 };
 static_assert(sizeof(ListArgs) == 736, "ListArgs differs between host and device");
 
+// What is known of rows that were listed before their places were.
+struct StagingControl {
+    // Entries of all rows.
+    u64 entries;
+    // 1 where a row or all of them had too little room.
+    u32 overflow;
+    // Zero.
+    u32 unused;
+};
+static_assert(sizeof(StagingControl) == 16, "StagingControl differs between host and device");
+
+// Arguments of `cell_list_stage`: rows wherever there is room.
+struct StageArgs {
+    // What is listed; rows are counted too.
+    ListArgs list;
+    // Neighbours, by input index, those of a row together.
+    u32 *staged;
+    // Where each row begins there, by input index.
+    u64 *start;
+    // Zeroed before.
+    StagingControl *control;
+    // Entries that there is room for.
+    u64 capacity;
+};
+static_assert(sizeof(StageArgs) == 768, "StageArgs differs between host and device");
+
+// Arguments of `copy_rows`: rows to their places.
+struct CopyRowsArgs {
+    // Row starts, `[n + 1]`.
+    u64 *offset;
+    // See [`StageArgs`].
+    u64 *start;
+    // See [`StageArgs`].
+    u32 *staged;
+    // Neighbours, by input index.
+    u32 *index;
+    // Number of rows.
+    u32 n;
+    // Zero.
+    u32 unused;
+};
+static_assert(sizeof(CopyRowsArgs) == 40, "CopyRowsArgs differs between host and device");
+
 // Arguments of `query_*`: lists of queries among points of another set.
 struct QueryArgs {
     // The points, in cells of one class, with rows by query; [`ListArgs::n`] is the number of queries. Radii are per
@@ -524,6 +573,21 @@ struct ClusterControlArgs {
     u64 end;
 };
 static_assert(sizeof(ClusterControlArgs) == 24, "ClusterControlArgs differs between host and device");
+
+// Arguments of `sort_particles`.
+struct SortParticlesArgs {
+    // The sort, counted and scanned.
+    SortArgs sort;
+    // The particles.
+    Particles from;
+    // The particles in the order of the cells.
+    Particles to;
+    // Place of each input index.
+    u32 *place;
+    // The list there has been; there is none then.
+    ClusterControl *control;
+};
+static_assert(sizeof(SortParticlesArgs) == 696, "SortParticlesArgs differs between host and device");
 
 // Arguments of `list_clusters`.
 struct ClusterListArgs {

@@ -1,7 +1,7 @@
 //! Lists of what is near clusters of consecutive particles, and steps by them.
 
 use super::{
-    grid::{GatherArgs, Grid},
+    grid::{GatherArgs, Grid, SortArgs},
     particles::{Integrator, Particles, Status},
     physics::{Box3, Law},
 };
@@ -53,6 +53,20 @@ layouts! {
         pub step: u64,
         /// The first step that is not to be computed.
         pub end: u64,
+    }
+
+    /// Arguments of `sort_particles`.
+    pub struct SortParticlesArgs {
+        /// The sort, counted and scanned.
+        pub sort: SortArgs,
+        /// The particles.
+        pub from: Particles,
+        /// The particles in the order of the cells.
+        pub to: Particles,
+        /// Place of each input index.
+        pub place: Ptr<u32>,
+        /// The list there has been; there is none then.
+        pub control: Ptr<ClusterControl>,
     }
 
     /// Arguments of `list_clusters`.

@@ -48,8 +48,10 @@ layouts! {
     pub struct SortArgs {
         /// Cells to sort into.
         pub grid: Grid,
-        /// Particles in each cell, counted from zero.
+        /// Particles in each cell: counted from zero, and zero again once all have their slots.
         pub count: Ptr<u32>,
+        /// State of the scan between the two, zeroed by the count, `[n_tiles]`.
+        pub tiles: Ptr<u64>,
         /// Positions, with radii in w where `variable`.
         pub position: Ptr<Float4>,
         /// Cell of each particle, written by the count.
@@ -60,6 +62,10 @@ layouts! {
         pub n: u32,
         /// 1 where radii are per particle.
         pub variable: u32,
+        /// Length of that state.
+        pub n_tiles: u32,
+        /// Zero.
+        pub unused: u32,
     }
 
     /// Arguments of `scan_u32` and `scan_u64`: exclusive prefix sums in one pass with look-back.
@@ -158,6 +164,46 @@ layouts! {
         pub half: u32,
         /// Added to ranges so that roundings lose no candidate.
         pub slack: f32,
+        /// Zero.
+        pub unused: u32,
+    }
+
+    /// What is known of rows that were listed before their places were.
+    pub struct StagingControl {
+        /// Entries of all rows.
+        pub entries: u64,
+        /// 1 where a row or all of them had too little room.
+        pub overflow: u32,
+        /// Zero.
+        pub unused: u32,
+    }
+
+    /// Arguments of `cell_list_stage`: rows wherever there is room.
+    pub struct StageArgs {
+        /// What is listed; rows are counted too.
+        pub list: ListArgs,
+        /// Neighbours, by input index, those of a row together.
+        pub staged: Ptr<u32>,
+        /// Where each row begins there, by input index.
+        pub start: Ptr<u64>,
+        /// Zeroed before.
+        pub control: Ptr<StagingControl>,
+        /// Entries that there is room for.
+        pub capacity: u64,
+    }
+
+    /// Arguments of `copy_rows`: rows to their places.
+    pub struct CopyRowsArgs {
+        /// Row starts, `[n + 1]`.
+        pub offset: Ptr<u64>,
+        /// See [`StageArgs`].
+        pub start: Ptr<u64>,
+        /// See [`StageArgs`].
+        pub staged: Ptr<u32>,
+        /// Neighbours, by input index.
+        pub index: Ptr<u32>,
+        /// Number of rows.
+        pub n: u32,
         /// Zero.
         pub unused: u32,
     }
