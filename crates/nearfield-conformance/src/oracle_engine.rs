@@ -4,7 +4,7 @@ mod integrate;
 
 use nearfield_core::{
     Dynamics, Engine, Error, ListKind, ListRequest, Method, NeighborList, Particles, PerParticle, Plan, Quantities,
-    Report, Result, System, Totals, Vec3s,
+    Report, Result, Skin, System, Totals, Vec3s,
     engine::StepCost,
     maintenance::{Action, EnergyCounter, Motion, Policy},
     oracle::{self, Pair, Reference},
@@ -120,11 +120,12 @@ impl OracleEngine {
         if plan.method.uses_list() {
             let fits = 8 * n_pairs as u64 <= plan.memory_budget;
             let positions = &system.particles.position;
-            let valid = list_positions.as_ref().is_some_and(|old| moved_less(system, old, plan.skin / 2.0)) && fits;
+            let valid =
+                list_positions.as_ref().is_some_and(|old| moved_less(system, old, plan.skin.or_usual() / 2.0)) && fits;
             needs_structure = !valid;
             if !valid {
                 report.list_builds += 1;
-                report.dangerous_builds += u64::from(*list_built_last && plan.skin > 0.0);
+                report.dangerous_builds += u64::from(*list_built_last && plan.skin != Skin::NONE);
                 *list_positions = Some(positions.clone());
             }
             *list_built_last = !valid;

@@ -2,7 +2,10 @@
 //!
 //! State stays on the device between calls. Inner loops are monomorphic behind this boundary.
 
-use crate::{Dynamics, ListRequest, NeighborList, Particles, Plan, Result, System, Vec3s, maintenance::EnergyCounter};
+use crate::{
+    Dynamics, ListRequest, NeighborList, Particles, Plan, Result, System, Vec3s, maintenance::EnergyCounter,
+    skin::LearnedSkin,
+};
 use serde::{Deserialize, Serialize};
 
 /// What an evaluation computes beside forces.
@@ -60,6 +63,7 @@ pub struct StepCost {
 
 /// What an engine did since the system was loaded.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Report {
     /// Force evaluations.
     pub evaluations: u64,
@@ -74,6 +78,8 @@ pub struct Report {
     /// List builds that came at the first step after the one before: the skin is too thin for the motion. No pair
     /// is missed (the test runs before each use), but the list saves nothing.
     pub dangerous_builds: u64,
+    /// Skin of the last list, \[length\]; zero without lists.
+    pub skin: f32,
     /// Evaluations whose list did not fit the memory budget and was processed in batches.
     pub batched_evaluations: u64,
     /// Seconds spent building structures.
@@ -93,6 +99,12 @@ pub struct Report {
 }
 
 impl Report {
+    /// Mean number of evaluations that a stored list served; `None` without lists.
+    pub fn steps_per_list(&self) -> Option<f64> {
+        let by_lists = self.evaluations.saturating_sub(self.batched_evaluations) as f64;
+        (self.list_builds > 0).then(|| by_lists / self.list_builds as f64)
+    }
+
     /// The sum of two reports, `later` being of the same simulation after the engine was loaded again.
     #[must_use]
     pub fn followed_by(mut self, mut later: Self) -> Self {
@@ -104,6 +116,7 @@ impl Report {
             forced_builds: self.forced_builds + later.forced_builds,
             list_builds: self.list_builds + later.list_builds,
             dangerous_builds: self.dangerous_builds + later.dangerous_builds,
+            skin: if later.list_builds > 0 { later.skin } else { self.skin },
             batched_evaluations: self.batched_evaluations + later.batched_evaluations,
             build_seconds: self.build_seconds + later.build_seconds,
             refit_seconds: self.refit_seconds + later.refit_seconds,
@@ -116,14 +129,17 @@ impl Report {
     }
 }
 
-/// How an engine keeps the particles in memory. Sums in f32 depend on it, so a run that is to be continued bit for bit
-/// keeps it beside the particles.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+/// How an engine keeps the particles in memory, and its lists. Sums in f32 depend on both, so a run that is to be
+/// continued bit for bit keeps this beside the particles.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MemoryOrder {
     /// Input index of the particle at each place, `[N]`; empty for input order.
     pub ids: Vec<u32>,
     /// Step at which the particles were last sorted.
     pub sorted_at: Option<u64>,
+    /// What was learned of the best skin.
+    #[serde(default)]
+    pub skin: LearnedSkin,
 }
 
 /// A device that holds a system and computes on it.

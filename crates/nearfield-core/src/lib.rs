@@ -17,6 +17,7 @@ pub mod potentials;
 pub mod predicate;
 mod radii;
 mod sim_box;
+pub mod skin;
 mod system;
 mod vec3s;
 
@@ -30,5 +31,6 @@ pub use particles::Particles;
 pub use plan::{Images, Method, Order, Plan};
 pub use radii::Radii;
 pub use sim_box::{Boundary, SimBox};
+pub use skin::Skin;
 pub use system::System;
 pub use vec3s::Vec3s;

@@ -1,6 +1,6 @@
 //! How a system is to be computed: method, images, order, maintenance and their settings.
 
-use crate::Maintenance;
+use crate::{Maintenance, Skin};
 use serde::{Deserialize, Serialize};
 use std::{fmt, str::FromStr};
 
@@ -116,8 +116,8 @@ pub struct Plan {
     pub order: Order,
     /// When a BVH is rebuilt rather than refitted.
     pub maintenance: Maintenance,
-    /// Verlet skin of list methods, \[length\]; 0 builds the list at each step.
-    pub skin: f32,
+    /// Verlet skin of list methods.
+    pub skin: Skin,
     /// Sum forces independently of order, so that results are bitwise equal across methods and thread counts.
     /// BVH methods always do; `cell` and `brute` are faster without.
     pub deterministic: bool,
@@ -133,7 +133,7 @@ impl Plan {
             images: Images::Gamma,
             order: Order::Morton,
             maintenance: Maintenance::Gradient,
-            skin: 0.3,
+            skin: Skin::Auto,
             deterministic: false,
             memory_budget: 4 << 30,
         }

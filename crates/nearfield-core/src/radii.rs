@@ -31,6 +31,16 @@ impl Radii {
         }
     }
 
+    /// The mean radius; zero without particles.
+    pub fn mean(&self) -> f32 {
+        match self {
+            Self::Uniform(radius) => *radius,
+            Self::PerParticle(radii) => {
+                (radii.iter().map(|&r| f64::from(r)).sum::<f64>() / radii.len().max(1) as f64) as f32
+            }
+        }
+    }
+
     /// The largest radius; zero when there are no particles with one.
     pub fn largest(&self) -> f32 {
         match self {

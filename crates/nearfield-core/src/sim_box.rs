@@ -157,6 +157,17 @@ impl SimBox {
         }
         Ok(())
     }
+
+    /// The most that may be added to a search `range` \[length\] so that no pair is found at two images: with it, the
+    /// range is half of the shortest periodic length, less what f32 rounds when the two are added. Infinite where
+    /// nothing is periodic, negative where the range itself leaves nothing.
+    pub fn room_around(&self, range: f32) -> f32 {
+        let lengths = self.lengths();
+        (0..3)
+            .filter(|&axis| self.is_periodic(axis))
+            .map(|axis| 0.5 * lengths[axis] * (1.0 - 4.0 * f32::EPSILON) - range)
+            .fold(f32::INFINITY, f32::min)
+    }
 }
 
 #[cfg(test)]
@@ -178,6 +189,22 @@ mod tests {
         let slab = SimBox::new([0.0; 3], [1.0; 3], [Boundary::Periodic, Boundary::Open, Boundary::Wall]).unwrap();
         assert_eq!(slab.images(), [[0, 0, 0], [-1, 0, 0], [1, 0, 0]]);
         assert_eq!(SimBox::cubic(1.0, Boundary::Periodic).unwrap().images().len(), 27);
+    }
+
+    #[test]
+    fn range_and_room_fit_into_half_of_the_shortest_periodic_length() {
+        let boundary = [Boundary::Periodic, Boundary::Wall, Boundary::Periodic];
+        for length in [10.0f32, 7.3, 1e-3, 123_456.7] {
+            let sim_box = SimBox::new([0.0; 3], [length, 0.1 * length, 2.0 * length], boundary).unwrap();
+            for part in [1e-4, 0.1, 0.3, 0.49, 0.499_99] {
+                let range = part * length;
+                let room = sim_box.room_around(range);
+                assert!(room > 0.0 && sim_box.check_range(range + room, None).is_ok(), "{length} {part} {room}");
+                assert!((range + room) / length > 0.499_99, "{length} {part} {room}");
+            }
+            assert!(sim_box.room_around(0.51 * length) < 0.0);
+        }
+        assert_eq!(SimBox::cubic(1.0, Boundary::Wall).unwrap().room_around(3.0), f32::INFINITY);
     }
 
     #[test]

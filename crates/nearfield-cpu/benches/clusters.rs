@@ -1,61 +1,94 @@
 //! Where the time of `cluster` goes: whole steps of the Lennard-Jones melt by phase, and evaluations where particles
 //! have very many neighbours or next to none.
 //!
-//! `cargo bench -p nearfield-cpu --bench clusters [-- [METHOD:]N[:SKIN|:rR] ...]`. One line of JSON for each case.
-//! Threads: RAYON_NUM_THREADS.
-//! - The melt: density 0.8442, cutoff 2.5, dt 0.005, after 200 steps of melting from T = 1.44: ns per particle and step
-//!   of the phases that the engine reports, and of the whole; medians over batches of 40 steps or more.
-//! - `rR`: paper A's lattice, spacing 10 with walls, and cutoff R: the median of three evaluations of forces, structure
-//!   included.
+//! `cargo bench -p nearfield-cpu --bench clusters [-- [METHOD:]N[:rR][:SKIN] ...]`, SKIN a number or `auto`. One line of
+//! JSON for each case. Threads: RAYON_NUM_THREADS.
+//! - `N`, `N:SKIN`: the melt, density 0.8442, cutoff 2.5, dt 0.005, after 200 steps of melting from T = 1.44; the default is
+//!   `auto`.
+//! - `N:rR:SKIN`: as paper A's disordered particles, one to a cube of 10 with walls, cutoff R, moving at T = 1 by steps of
+//!   0.001 and no farther than 0.01.
+//! - `N:rR`: paper A's lattice, spacing 10 with walls, at rest: the median of three evaluations of forces, structure included; `uniform` or
+//!   `lognormal` for R gives paper A's radii, U(1, 160) and LN(1, 2) within 1 to 330.
+//!
+//! What moves gives ns per particle and step of the phases that the engine reports, and of the whole: medians over
+//! batches of 40 steps or more.
 
 use nearfield_core::{
-    Boundary, Dynamics, Engine, Interaction, Method, Particles, Plan, Quantities, Radii, Report, SimBox, System,
+    Boundary, Dynamics, Engine, Interaction, Method, Particles, Plan, Quantities, Radii, Report, SimBox, Skin, System,
 };
 use nearfield_cpu::CpuEngine;
 use rand::{RngExt, SeedableRng};
 use std::time::Instant;
 
-const MELTING_STEPS: u64 = 200;
+const WARM_UP: u64 = 200;
 const BATCHES: usize = 9;
 
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with("--")).collect();
     let words = if words.is_empty() { ["32000", "256000"].map(String::from).to_vec() } else { words };
     for word in words {
-        let mut method = Method::Cluster;
-        let (mut numbers, mut cutoff) = (Vec::new(), None);
+        let (mut plan, mut n, mut cutoff, mut skin) = (Plan::new(Method::Cluster), None, None, None);
         for part in word.split(':') {
-            match (part.parse(), part.strip_prefix('r').and_then(|r| r.parse::<f32>().ok())) {
-                (_, Some(r)) => cutoff = Some(r),
-                (Ok(name), None) => method = name,
-                (Err(_), None) => numbers.push(part.parse::<f64>().expect("a method or a number")),
+            match part.parse() {
+                Ok(method) => plan.method = method,
+                Err(_) if part == "auto" => skin = Some(Skin::Auto),
+                Err(_) if part.starts_with('r') => cutoff = Some(part[1..].to_owned()),
+                Err(_) if n.is_none() => n = Some(part.parse().expect("a number of particles")),
+                Err(_) => skin = Some(Skin::Fixed(part.parse().expect("a skin"))),
             }
         }
-        let mut plan = Plan::new(method);
-        if let Some(&skin) = numbers.get(1) {
-            plan.skin = skin as f32;
-        }
-        match cutoff {
-            Some(r) => evaluate(numbers[0] as usize, r, &plan),
-            None => run(numbers[0] as usize, &plan),
+        let n = n.expect("a number of particles");
+        match (cutoff, skin) {
+            (Some(r), None) => evaluate(spaced(n, 0.01, &r), &plan),
+            (Some(r), Some(skin)) => {
+                let dynamics = Dynamics { max_displacement: 0.01, ..Dynamics::nve(0.001) };
+                run(spaced(n, 1.0, &r), dynamics, &Plan { skin, ..plan });
+            }
+            (None, skin) => run(crystal(n), Dynamics::nve(0.005), &Plan { skin: skin.unwrap_or(Skin::Auto), ..plan }),
         }
     }
 }
 
-/// Evaluations of paper A's lattice.
-fn evaluate(n: usize, cutoff: f32, plan: &Plan) {
+/// Particles somewhere near the points of a lattice, anywhere in its cells with a `spread` of 1.
+fn spaced(n: usize, spread: f32, radii: &str) -> System {
     let side = (n as f64).cbrt().round() as usize;
     let mut rng = rand_pcg::Pcg64::seed_from_u64(1);
-    let mut along = |cell: usize| (cell as f32 + 0.5 + 0.01 * (rng.random::<f32>() - 0.5)) * 10.0;
+    let mut along = |cell: usize| (cell as f32 + 0.5 + spread * (rng.random::<f32>() - 0.5)) * 10.0;
     let points = (0..side.pow(3)).map(|k| [k % side, k / side % side, k / side / side].map(&mut along));
-    let system = System {
-        particles: Particles::at(points.collect::<Vec<_>>()),
-        sim_box: SimBox::cubic(side as f32 * 10.0, Boundary::Wall).expect("a box"),
-        radii: Radii::Uniform(cutoff),
-        interaction: Interaction::lennard_jones(),
+    let mut particles = Particles::at(points.collect::<Vec<_>>());
+    heat(&mut particles, 1.0);
+    let mut interaction = Interaction::lennard_jones();
+    let mut draw = |radius: &dyn Fn(f32, f32) -> f32| {
+        let mut radius = || radius(rng.random(), (0..12).map(|_| rng.random::<f32>()).sum::<f32>() - 6.0);
+        let radii =
+            (0..particles.len()).map(|_| std::iter::repeat_with(&mut radius).find(|r| (1.0..330.0).contains(r)));
+        Radii::PerParticle(radii.flatten().collect())
     };
+    let radii = match radii {
+        "uniform" => draw(&|uniform, _| 1.0 + 159.0 * uniform),
+        "lognormal" => draw(&|_, normal| (1.0 + 2.0 * normal).exp()),
+        cutoff => Radii::Uniform(cutoff.parse().expect("a cutoff, uniform or lognormal")),
+    };
+    if radii.is_uniform() {
+        interaction.types[0].sigma = radii.largest() / 2.5;
+    }
+    System { particles, sim_box: SimBox::cubic(side as f32 * 10.0, Boundary::Wall).expect("a box"), radii, interaction }
+}
+
+/// Gives particles of mass 1 velocities of about this deviation, and no momentum.
+fn heat(particles: &mut Particles, deviation: f32) {
+    let mut rng = rand_pcg::Pcg64::seed_from_u64(1);
+    for axis in particles.velocity.axes_mut() {
+        axis.iter_mut().for_each(|v| *v = deviation * (0..12).map(|_| rng.random::<f32>() - 0.5).sum::<f32>());
+        let mean = axis.iter().sum::<f32>() / axis.len() as f32;
+        axis.iter_mut().for_each(|v| *v -= mean);
+    }
+}
+
+/// Evaluations of particles at rest.
+fn evaluate(system: System, plan: &Plan) {
     // Nothing moves, so a skin would have lists found once.
-    let plan = Plan { skin: 0.0, ..*plan };
+    let plan = Plan { skin: Skin::NONE, ..*plan };
     let mut engine = CpuEngine::new();
     engine.load(&system, &plan).expect("a load");
     engine.evaluate(Quantities::FORCES).expect("an evaluation");
@@ -67,9 +100,10 @@ fn evaluate(n: usize, cutoff: f32, plan: &Plan) {
     seconds.sort_by(f64::total_cmp);
     let pairs = engine.evaluate(Quantities::ALL).expect("an evaluation").pairs;
     println!(
-        "{{\"method\": \"{}\", \"n\": {}, \"cutoff\": {cutoff}, \"pairs\": {pairs}, \"ms\": {:.1}}}",
+        "{{\"method\": \"{}\", \"n\": {}, \"cutoff\": {}, \"pairs\": {pairs}, \"ms\": {:.1}}}",
         plan.method,
-        side.pow(3),
+        system.particles.len(),
+        system.radii.largest(),
         1e3 * seconds[1]
     );
 }
@@ -87,12 +121,7 @@ fn crystal(n: usize) -> System {
         }
     }
     let mut particles = Particles::at(points);
-    let mut rng = rand_pcg::Pcg64::seed_from_u64(1);
-    for axis in particles.velocity.axes_mut() {
-        axis.iter_mut().for_each(|v| *v = 1.2 * (0..12).map(|_| rng.random::<f32>() - 0.5).sum::<f32>());
-        let mean = axis.iter().sum::<f32>() / axis.len() as f32;
-        axis.iter_mut().for_each(|v| *v -= mean);
-    }
+    heat(&mut particles, 1.2);
     System {
         sim_box: SimBox::cubic(length as f32, Boundary::Periodic).expect("a box"),
         particles,
@@ -101,14 +130,12 @@ fn crystal(n: usize) -> System {
     }
 }
 
-fn run(n: usize, plan: &Plan) {
-    let system = crystal(n);
+fn run(system: System, dynamics: Dynamics, plan: &Plan) {
     let n = system.particles.len();
     let mut engine = CpuEngine::new();
     engine.load(&system, plan).expect("a load");
-    let dynamics = Dynamics::nve(0.005);
-    engine.advance(&dynamics, 0, MELTING_STEPS, Quantities::FORCES).expect("a run");
-    let mut step = MELTING_STEPS;
+    engine.advance(&dynamics, 0, WARM_UP, Quantities::FORCES).expect("a run");
+    let mut step = WARM_UP;
     let steps = (2_000_000 / n as u64).max(40);
     let mut phases = Vec::new();
     let mut last = engine.report();
@@ -136,18 +163,19 @@ fn run(n: usize, plan: &Plan) {
     };
     let report = engine.report();
     println!(
-        "{{\"method\": \"{}\", \"n\": {n}, \"skin\": {}, \"ns\": {:.1}, \"build\": {:.1}, \"refresh_and_prune\": {:.1}, \
+        "{{\"method\": \"{}\", \"n\": {n}, \"skin\": {}, \"cutoff\": {}, \"ns\": {:.1}, \"build\": {:.1}, \"refresh_and_prune\": {:.1}, \
          \"query\": {:.1}, \"integrate\": {:.1}, \"million_per_second\": {:.1}, \"steps_per_list\": {:.1}, \
          \"dangerous\": {}, \"temperature\": {:.4}, \"bytes_per_particle\": {:.0}}}",
         plan.method,
-        plan.skin,
+        report.skin,
+        system.radii.largest(),
         median(0),
         median(1),
         median(2),
         median(3),
         median(4),
         1e3 / median(0),
-        report.evaluations as f64 / report.list_builds.max(1) as f64,
+        report.steps_per_list().unwrap_or_default(),
         report.dangerous_builds,
         totals.kinetic_energy * 2.0 / (3.0 * n as f64),
         report.bytes as f64 / n as f64,

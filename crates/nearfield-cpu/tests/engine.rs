@@ -70,26 +70,35 @@ fn all_exact_methods_run_the_same_trajectory_bit_for_bit() {
 }
 
 /// A list remembers where particles were when it was built, and f32 sums its order: both end where another engine may
-/// take over.
+/// take over, which goes on with what was learned of the best skin.
 #[test]
 fn a_run_of_clusters_continues_bit_for_bit_from_its_memory_order() {
     let system = jittered(8, 1.1, Boundary::Periodic);
-    let (plan, dynamics) = (Plan { skin: 0.4, ..Plan::new(Method::Cluster) }, Dynamics::nve(0.004));
-    let mut whole = CpuEngine::new();
-    whole.load(&system, &plan).unwrap();
-    whole.advance(&dynamics, 0, 17, Quantities::FORCES).unwrap();
-    let mut half = system.clone();
-    whole.snapshot(&mut half.particles).unwrap();
-    let order = whole.memory_order().unwrap();
-    assert_ne!(order.ids, (0..order.ids.len() as u32).collect::<Vec<_>>(), "particles lie in the order of clusters");
-    whole.advance(&dynamics, 17, 30, Quantities::FORCES).unwrap();
-    let mut continued = CpuEngine::new();
-    continued.load(&half, &plan).unwrap();
-    continued.set_memory_order(&order).unwrap();
-    continued.advance(&dynamics, 17, 30, Quantities::FORCES).unwrap();
-    let (mut expected, mut found) = (Particles::default(), Particles::default());
-    whole.snapshot(&mut expected).unwrap();
-    continued.snapshot(&mut found).unwrap();
-    assert!(found == expected);
-    assert!(whole.report().list_builds > 3, "{:?}", whole.report());
+    let dynamics = Dynamics::nve(0.004);
+    for skin in [Skin::Fixed(0.4), Skin::Auto] {
+        let plan = Plan { skin, ..Plan::new(Method::Cluster) };
+        let mut whole = CpuEngine::new();
+        whole.load(&system, &plan).unwrap();
+        whole.advance(&dynamics, 0, 57, Quantities::FORCES).unwrap();
+        let mut half = system.clone();
+        whole.snapshot(&mut half.particles).unwrap();
+        let order = whole.memory_order().unwrap();
+        assert_ne!(
+            order.ids,
+            (0..order.ids.len() as u32).collect::<Vec<_>>(),
+            "particles lie in the order of clusters"
+        );
+        assert_eq!(order.skin == Default::default(), skin != Skin::Auto, "{order:?}");
+        whole.advance(&dynamics, 57, 90, Quantities::FORCES).unwrap();
+        let mut continued = CpuEngine::new();
+        continued.load(&half, &plan).unwrap();
+        continued.set_memory_order(&order).unwrap();
+        continued.advance(&dynamics, 57, 90, Quantities::FORCES).unwrap();
+        let (mut expected, mut found) = (Particles::default(), Particles::default());
+        whole.snapshot(&mut expected).unwrap();
+        continued.snapshot(&mut found).unwrap();
+        assert!(found == expected, "{skin}");
+        assert!(whole.report().list_builds > 5, "{:?}", whole.report());
+        assert_eq!(whole.report().skin, continued.report().skin, "{skin}");
+    }
 }

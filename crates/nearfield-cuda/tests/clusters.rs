@@ -5,8 +5,8 @@ mod emulated;
 
 use nearfield_conformance::cases;
 use nearfield_core::{
-    Boundary, Dynamics, Engine, Ensemble, Interaction, Method, Particles, PerParticle, Plan, Quantities, Radii, System,
-    Truncation, oracle,
+    Boundary, Dynamics, Engine, Ensemble, Interaction, Method, Particles, PerParticle, Plan, Quantities, Radii, Skin,
+    System, Truncation, oracle,
     potentials::{Potential, Wca},
 };
 use nearfield_cuda::{CudaEngine, Variant};
@@ -67,7 +67,7 @@ fn check_lists(cases: &[(usize, f32, f32, f32)], variant: Variant, steps: u64) {
         for (b, boundary) in BOUNDARIES.into_iter().enumerate() {
             let what = format!("{n} in {length}, cutoff {cutoff}, {boundary:?}");
             let system = moving(n, length, boundary, cutoff, speed, (10 * case + b) as u64);
-            let mut engine = loaded(&system, &Plan { skin: 0.4, ..Plan::new(Method::Cluster) });
+            let mut engine = loaded(&system, &Plan { skin: Skin::Fixed(0.4), ..Plan::new(Method::Cluster) });
             compare(&mut engine, &system, &what);
             assert_eq!(engine.cluster_variant(), Some(variant), "{what}");
             for round in 0..3 {
@@ -132,7 +132,7 @@ fn particles_with_few_neighbors_follow_the_trajectory_of_all_pairs() {
     });
     for system in [gas].into_iter().chain(soft) {
         follows_all_pairs(&system, &Plan::new(Method::Cell), 2e-3);
-        let engine = follows_all_pairs(&system, &Plan { skin: 0.0, ..Plan::new(Method::Cluster) }, 2e-3);
+        let engine = follows_all_pairs(&system, &Plan { skin: Skin::NONE, ..Plan::new(Method::Cluster) }, 2e-3);
         assert_eq!(engine.cluster_variant(), Some(Variant::Pairs));
     }
 }
@@ -178,7 +178,7 @@ fn steps_do_not_depend_on_how_they_are_enqueued() {
     let langevin = Dynamics { ensemble, seed: 9, ..Dynamics::nve(0.004) };
     // Plain Lennard-Jones is not computed alike with and without random numbers.
     let motions = [(Dynamics::nve(0.004), Truncation::Cut), (langevin, Truncation::Force)];
-    let clusters = |skin| Plan { skin, ..Plan::new(Method::Cluster) };
+    let clusters = |skin| Plan { skin: Skin::Fixed(skin), ..Plan::new(Method::Cluster) };
     let cases = [
         (3.5, clusters(0.4), Some(Variant::List)),
         (8.0, clusters(0.4), Some(Variant::SparseList)),
@@ -261,7 +261,7 @@ fn lists_that_outgrow_the_budget_within_a_call_are_given_up() {
 fn one_particle_and_none_make_their_steps() {
     for n in [0, 1] {
         let system = moving(n, 20.0, [Boundary::Periodic; 3], 2.5, 3.0, 1);
-        let mut engine = loaded(&system, &Plan { skin: 0.4, ..Plan::new(Method::Cluster) });
+        let mut engine = loaded(&system, &Plan { skin: Skin::Fixed(0.4), ..Plan::new(Method::Cluster) });
         engine.advance(&Dynamics::nve(0.004), 0, 301, Quantities::FORCES).expect("a run");
         assert_eq!(engine.report().evaluations, 302);
         let mut end = Particles::default();

@@ -9,7 +9,7 @@
 //! (exact sums make all of them the same trajectory), so that a drift of the machine's speed strikes all alike.
 
 use nearfield::{
-    Boundary, Dynamics, Interaction, Maintenance, Method, Plan, Report, Simulation, System,
+    Boundary, Dynamics, Interaction, Maintenance, Method, Plan, Report, Simulation, Skin, System,
     generate::{Distribution, Generate, Positions, RadiiSpec},
 };
 use serde_json::json;
@@ -92,7 +92,7 @@ fn simulation(n: usize, scale: f64, positions: Positions, radii: &RadiiSpec, mai
     let radii = start.radii.expect("radii were asked for");
     interaction.types[0].sigma = radii.largest() / interaction.radius_per_sigma;
     let system = System { sim_box: start.sim_box, particles: start.particles, radii, interaction };
-    let plan = Plan { maintenance, skin: 0.0, ..Plan::new(Method::RtList) };
+    let plan = Plan { maintenance, skin: Skin::NONE, ..Plan::new(Method::RtList) };
     let dynamics = Dynamics { max_displacement: 1.0, ..Dynamics::nve(0.05) };
     Simulation::builder(system).dynamics(dynamics).method(Method::RtList).plan(plan).build().expect("a valid system")
 }

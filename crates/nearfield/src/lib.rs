@@ -45,7 +45,7 @@ pub use methods::{MethodSupport, methods};
 pub use nearfield_core::{
     Boundary, Dynamics, Engine, Ensemble, Error as CoreError, Images, Interaction, ListKind, ListRequest, Maintenance,
     Method, Mixing, NeighborList, Order, ParticleType, Particles, PerParticle, Plan, Quantities, Radii, Report, SimBox,
-    System, Totals, Truncation, Vec3s, interaction, potentials,
+    Skin, System, Totals, Truncation, Vec3s, interaction, potentials,
 };
 pub use search::{NeighborSearch, Neighbors, Pair};
 pub use setup::{configuration_system, file_points, file_system, system};

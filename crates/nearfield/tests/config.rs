@@ -3,7 +3,7 @@
 use nearfield::config::{Bytes, Choice, Config, Device, Error, PotentialName, Source};
 use nearfield::generate::{Outside, Positions};
 use nearfield_core::{
-    Boundary, Ensemble, Images, Maintenance, Method, Mixing, Order, Radii, Truncation, potentials::Potential,
+    Boundary, Ensemble, Images, Maintenance, Method, Mixing, Order, Radii, Skin, Truncation, potentials::Potential,
 };
 use std::{io::Write, path::Path};
 
@@ -76,9 +76,10 @@ checkpoint_every = 10000
 fn defaults_are_those_of_the_manual() {
     let listed = parse(LISTING).unwrap();
     let mut sparse = parse("[system.generate]\ndensity = 0.8442\n[system.generate.radii]").unwrap();
-    // The one default that the listing cannot show: the single type has no name.
-    assert_eq!(sparse.interaction.types[0].name, None);
+    // Two defaults that the listing cannot show: the single type has no name, and the skin is chosen.
+    assert_eq!((&sparse.interaction.types[0].name, sparse.method.skin), (&None, Skin::Auto));
     sparse.interaction.types[0].name = Some("1".into());
+    sparse.method.skin = Skin::Fixed(0.3);
     assert_eq!(listed, sparse);
 
     let defaults = parse("").unwrap();
@@ -90,6 +91,18 @@ fn defaults_are_those_of_the_manual() {
     assert_eq!((defaults.dynamics.friction, defaults.dynamics.relaxation), (1.0, 0.1));
     assert_eq!((defaults.output.rdf_every, defaults.output.msd_every), (0, 0));
     assert_eq!(sparse.system.generate.unwrap().spread, 25.0);
+}
+
+#[test]
+fn a_skin_is_a_number_or_chosen() {
+    for (written, skin) in [("0.3", Skin::Fixed(0.3)), ("1", Skin::Fixed(1.0)), ("\"auto\"", Skin::Auto)] {
+        let config = parse(&format!("[method]\nskin = {written}")).unwrap();
+        assert_eq!(config.method.skin, skin);
+        assert_eq!(parse(&config.to_toml().unwrap()).unwrap().method.skin, skin);
+    }
+    assert_eq!(parse_with("", &["method.skin=auto"]).unwrap().method.skin, Skin::Auto);
+    assert!(parse("[method]\nskin = 0.3").unwrap().to_toml().unwrap().contains("skin = 0.3 "));
+    assert_eq!(message("[method]\nskin = \"thin\""), "line 2: method.skin = \"thin\": expected a number, or \"auto\"");
 }
 
 #[test]
@@ -473,7 +486,7 @@ fn a_configuration_becomes_interaction_dynamics_and_plan() {
 
     let plan = config.plan(Method::RtList);
     assert_eq!((plan.method, plan.images, plan.order), (Method::RtList, Images::Gamma, Order::Cell));
-    assert_eq!((plan.skin, plan.deterministic, plan.memory_budget), (0.4, true, 2 << 30));
+    assert_eq!((plan.skin, plan.deterministic, plan.memory_budget), (Skin::Fixed(0.4), true, 2 << 30));
 }
 
 #[test]

@@ -6,7 +6,7 @@ use crate::{
     failure::Failure,
 };
 use nearfield::{
-    Boundary, CoreError, Engine, Error, Method, PerParticle, Plan, Quantities, System,
+    Boundary, CoreError, Engine, Error, Method, PerParticle, Plan, Quantities, Skin, System,
     config::{Choice, Config},
     engine, file_system, io,
 };
@@ -99,7 +99,7 @@ pub(super) fn plan(engine: &mut dyn Engine, system: &System, how: &How) -> Resul
         Choice::Of(method) => method,
         Choice::Auto => Method::Cell,
     };
-    let mut plan = Plan { order: how.order, skin: 0.0, ..Plan::new(method) };
+    let mut plan = Plan { order: how.order, skin: Skin::NONE, ..Plan::new(method) };
     if let Choice::Of(images) = how.images {
         plan.images = images;
     }

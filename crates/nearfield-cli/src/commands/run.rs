@@ -3,6 +3,7 @@
 use super::{configuration, note_radii, print_line, print_note};
 use crate::{arguments::Run as RunArguments, failure::Failure, progress::RunBar};
 use nearfield::{
+    Report, Skin,
     config::Config,
     run::{CHECKPOINT, Record, Run},
 };
@@ -44,8 +45,17 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     });
     bar.clear();
     let record = outcome?;
-    if arguments.explain && record.method != first {
-        print_note(&record.method.explain());
+    if arguments.explain {
+        if record.method != first {
+            print_note(&record.method.explain());
+        }
+        if let Some(steps) = record.steps_per_list {
+            let how = match record.plan.skin {
+                Skin::Auto => "chosen from what the lists before cost and how long they served",
+                Skin::Fixed(_) => "chosen by the user",
+            };
+            print_note(&format!("skin {:.3}: {how}; a list served {steps:.1} steps", record.report.skin));
+        }
     } else if record.method.reason != first.reason {
         print_note(&format!("method {}: {}", record.method.method, record.method.reason));
     }
@@ -111,16 +121,17 @@ fn summarise(record: &Record, output: &Path) {
         ));
     }
     print_line(&format!(
-        "{} structure builds ({:.3} s), {} refits ({:.3} s), {} lists, queries {:.3} s, integration {:.3} s",
+        "{} structure builds ({:.3} s), {} refits ({:.3} s), {}, queries {:.3} s, integration {:.3} s",
         report.builds,
         report.build_seconds,
         report.refits,
         report.refit_seconds,
-        report.list_builds,
+        lists(report),
         report.query_seconds,
         report.integrate_seconds
     ));
-    if report.dangerous_builds > 0 {
+    // Where the skin is ours to choose, one step was the best there was.
+    if report.dangerous_builds > 0 && record.plan.skin != Skin::Auto {
         print_note(&format!(
             "warning: {} of {} lists lasted one step only; no pair was missed, but a larger method.skin would be faster",
             report.dangerous_builds, report.list_builds
@@ -130,4 +141,14 @@ fn summarise(record: &Record, output: &Path) {
     let names = [names[0], &record.config.output.trajectory].into_iter().chain(names[1..].iter().copied());
     let written: Vec<_> = names.filter(|name| output.join(name).exists()).map(|name| name.to_string_lossy()).collect();
     print_line(&format!("in {}: {}", output.display(), written.join(", ")));
+}
+
+/// How many lists there were, how long they served, and the skin of the last.
+fn lists(report: &Report) -> String {
+    match report.steps_per_list() {
+        Some(steps) => {
+            format!("{} lists of {steps:.1} steps (the last with a skin of {:.3})", report.list_builds, report.skin)
+        }
+        None => "no lists".into(),
+    }
 }

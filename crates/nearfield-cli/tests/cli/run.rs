@@ -159,6 +159,26 @@ fn lists_that_last_one_step_only_are_warned_of() {
 }
 
 #[test]
+fn the_skin_is_chosen_and_reported() {
+    let folder = Folder::new();
+    folder.write("melt.toml", MELT);
+    for method in ["cluster", "rt-list"] {
+        let line = format!("run melt.toml --method {method} --steps 100 --device cpu --explain --output {method}");
+        let outcome = folder.succeed(&line);
+        assert!(outcome.stderr.contains("chosen from what the lists before cost"), "{}", outcome.stderr);
+        let record = folder.json(&format!("{method}/run.json"));
+        assert_eq!(record["plan"]["skin"], "auto");
+        let (skin, steps) = (record["report"]["skin"].as_f64().unwrap(), record["steps_per_list"].as_f64().unwrap());
+        assert!(skin > 0.0 && skin < 1.5 && steps > 1.0, "{method}: {skin} {steps}");
+        assert!(outcome.stdout.contains(&format!("lists of {steps:.1} steps")), "{}", outcome.stdout);
+    }
+    folder.succeed("run melt.toml --method cluster --steps 20 --device cpu --set method.skin=0.25 --output fixed");
+    let record = folder.json("fixed/run.json");
+    assert_eq!((&record["plan"]["skin"], &record["config"]["method"]["skin"]), (&0.25.into(), &0.25.into()));
+    assert_eq!(record["report"]["skin"], 0.25);
+}
+
+#[test]
 fn every_example_runs() {
     let folder = Folder::new();
     let examples = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples");

@@ -3,7 +3,7 @@
 use crate::{Factory, OracleEngine, cases, plans};
 use nearfield_core::{
     Boundary, Dynamics, Engine, Ensemble, Images, Interaction, Maintenance, Method, ParticleType, Particles, Plan,
-    Quantities, Radii, System, Truncation,
+    Quantities, Radii, Skin, System, Truncation,
     potentials::{Potential, Wca},
 };
 use rand::RngExt;
@@ -78,7 +78,11 @@ pub fn maintenance_and_skin_do_not_change_a_deterministic_trajectory(factory: Fa
         plans.extend(maintenance.iter().map(|&maintenance| Plan { maintenance, ..plan }));
     }
     for skin in [0.0, 0.1, 0.3] {
-        plans.extend(Images::ALL.iter().map(|&images| Plan { images, skin, ..Plan::new(Method::RtList) }));
+        plans.extend(Images::ALL.iter().map(|&images| Plan {
+            images,
+            skin: Skin::Fixed(skin),
+            ..Plan::new(Method::RtList)
+        }));
     }
     let mut first = None;
     plans::run(&mut *factory(), &system, &plans::deterministic(plans), |engine, plan| {

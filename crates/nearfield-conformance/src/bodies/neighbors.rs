@@ -6,7 +6,7 @@ use crate::{
     plans,
 };
 use nearfield_core::{
-    Dynamics, Engine, ListKind, ListRequest, NeighborList, Particles, Plan, Quantities, System,
+    Dynamics, Engine, ListKind, ListRequest, NeighborList, Particles, Plan, Quantities, Skin, System,
     oracle::{self, Pair},
     predicate,
 };
@@ -112,7 +112,7 @@ pub fn counts_of_neighbors_equal_the_oracle(factory: Factory) {
 pub fn a_list_after_a_run_is_that_of_the_present_positions(factory: Factory) {
     let mut system = cases::liquid(4, 3.0, 0.1, 2.2, 3);
     let mut moved = Particles::default();
-    let plans: Vec<_> = plans::every().into_iter().map(|plan| Plan { skin: 1.0, ..plan }).collect();
+    let plans: Vec<_> = plans::every().into_iter().map(|plan| Plan { skin: Skin::Fixed(1.0), ..plan }).collect();
     let start = system.particles.clone();
     plans::run(&mut *factory(), &system.clone(), &plans, |engine: &mut dyn Engine, plan| {
         engine.advance(&Dynamics::nve(0.004), 0, 25, Quantities::FORCES).expect("a run");

@@ -1,7 +1,9 @@
 //! What an engine says it did.
 
 use crate::{Factory, cases, plans};
-use nearfield_core::{Dynamics, Engine, Maintenance, Method, Plan, Quantities, System, maintenance::EnergyCounter};
+use nearfield_core::{
+    Dynamics, Engine, Maintenance, Method, Plan, Quantities, Skin, System, maintenance::EnergyCounter,
+};
 use std::sync::{
     Arc,
     atomic::{AtomicU32, Ordering},
@@ -19,7 +21,7 @@ fn advance(engine: &mut dyn Engine, from: u64, steps: u64) {
 
 /// BVH plans whose structure is kept at each evaluation: a list with a skin lets it rest.
 fn upkeep_each_step() -> Vec<Plan> {
-    let plans = plans::each_structure().into_iter().map(|plan| Plan { skin: 0.0, ..plan });
+    let plans = plans::each_structure().into_iter().map(|plan| Plan { skin: Skin::NONE, ..plan });
     plans.filter(|plan| plan.method.uses_bvh()).collect()
 }
 
@@ -60,11 +62,11 @@ pub fn every_never_refits_and_fixed_builds_at_each_period(factory: Factory) {
 /// A list with a skin serves several evaluations, one without is built at each.
 pub fn a_skin_saves_list_builds(factory: Factory) {
     for plan in plans::each_structure().into_iter().filter(|plan| plan.method.uses_list()) {
-        plans::run(&mut *factory(), &liquid(), &[Plan { skin: 0.0, ..plan }], |engine, plan| {
+        plans::run(&mut *factory(), &liquid(), &[Plan { skin: Skin::NONE, ..plan }], |engine, plan| {
             advance(engine, 0, STEPS);
             assert_eq!(engine.report().list_builds, STEPS + 1, "{plan:?}");
         });
-        plans::run(&mut *factory(), &liquid(), &[Plan { skin: 0.3, ..plan }], |engine, plan| {
+        plans::run(&mut *factory(), &liquid(), &[Plan { skin: Skin::Fixed(0.3), ..plan }], |engine, plan| {
             advance(engine, 0, STEPS);
             let report = engine.report();
             assert!((1..=STEPS / 3).contains(&report.list_builds), "{plan:?}: {report:?}");

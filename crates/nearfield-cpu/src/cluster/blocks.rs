@@ -123,9 +123,11 @@ impl Blocks {
                 let b = page * PAGE + k;
                 let particles = first[b] as usize..first[b + 1] as usize;
                 for axis in 0..3 {
-                    position.0[axis] = std::array::from_fn(|lane| padding(b, lane));
                     let from = &moving.position[axis][particles.clone()];
                     position.0[axis][..from.len()].copy_from_slice(from);
+                    for lane in from.len()..BLOCK {
+                        position.0[axis][lane] = padding(b, lane);
+                    }
                     extent = from.iter().fold(extent, |m, x| m.max(x.abs()));
                 }
             }

@@ -2,7 +2,7 @@
 
 use super::{
     blocks::{Blocks, Octet, PAGE},
-    quad::{self, Position, Quad, VECTORS, displacement, squared_length, twice},
+    quad::{self, Position, Quad, VECTORS, displacement, own_pairs, squared_length, twice},
 };
 use crate::{
     Grid, GroupBox, Run,
@@ -49,6 +49,14 @@ impl Pairs {
         self.blocks.clear();
     }
 
+    /// Marks the pages of all blocks.
+    fn mark_pages(&self, seen: &mut [bool]) {
+        self.segments.iter().for_each(|segment| seen[segment.cluster as usize / 2 / PAGE] = true);
+        // What is beyond the last segment is left over from a longer list.
+        let end = self.segments.last().map_or(0, |segment| segment.end as usize);
+        self.blocks[..end].iter().for_each(|&b| seen[b as usize / PAGE] = true);
+    }
+
     /// Closes a segment of the blocks from `start` to `end`.
     fn close(&mut self, cluster: u32, image: [i8; 3], start: usize, end: usize) {
         if end > start {
@@ -67,6 +75,17 @@ impl Pairs {
     fn bytes(&self) -> usize {
         self.segments.capacity() * size_of::<Segment>() + 4 * self.blocks.capacity()
     }
+}
+
+/// What pages of sums must be there for.
+#[derive(Clone, Copy)]
+pub(super) enum Reach<'a> {
+    /// The outer lists, and whatever inner ones are made of them.
+    Outer,
+    /// The inner lists as they are.
+    Inner,
+    /// All that is within the cutoff: there is no list.
+    Grid(&'a Grid),
 }
 
 /// The lists of consecutive blocks: the work of one task.
@@ -126,6 +145,16 @@ impl PairList {
         self.tasks.par_iter_mut().with_max_len(1).for_each(|task| super::isa().run(Prune { blocks, task }));
     }
 
+    /// Pairs of clusters and blocks in the outer lists.
+    pub fn entries(&self) -> u64 {
+        self.tasks.iter().map(|task| task.outer.blocks.len() as u64).sum()
+    }
+
+    /// Takes the outer lists as they are for the inner ones, for a single use.
+    pub fn use_once(&mut self) {
+        self.tasks.iter_mut().for_each(|task| std::mem::swap(&mut task.outer, &mut task.inner));
+    }
+
     pub fn bytes(&self) -> usize {
         self.tasks.iter().map(|t| t.outer.bytes() + t.inner.bytes() + t.second.bytes()).sum()
     }
@@ -142,12 +171,14 @@ impl Task {
         }
     }
 
-    /// Marks the pages of blocks that are listed, or with a `grid`, for there is no list then, that may come to be.
-    pub fn mark_pages(&mut self, grid: Option<&Grid>, blocks: &Blocks, seen: &mut [bool]) {
-        self.clusters_of.clone().for_each(|b| seen[b / PAGE] = true);
-        let Some(grid) = grid else {
-            return self.outer.blocks.iter().for_each(|&b| seen[b as usize / PAGE] = true);
+    /// Marks the pages of blocks that are listed, or that may come to be where there is no list.
+    pub fn mark_pages(&mut self, reach: Reach, blocks: &Blocks, seen: &mut [bool]) {
+        let grid = match reach {
+            Reach::Outer => return self.outer.mark_pages(seen),
+            Reach::Inner => return self.inner.mark_pages(seen),
+            Reach::Grid(grid) => grid,
         };
+        self.clusters_of.clone().for_each(|b| seen[b / PAGE] = true);
         for first in self.clusters_of.clone().step_by(PAGE) {
             let some = first..(first + PAGE).min(self.clusters_of.end);
             let all = some.map(|b| bounds(blocks, b, blocks.cutoff)).reduce(|a, b| GroupBox {
@@ -194,16 +225,19 @@ impl lanes::Kernel for Build<'_> {
             grid.find_rows(&group, blocks.first[b], runs);
             for runs in runs.chunk_by(|a, b| a.image == b.image) {
                 let image = runs[0].image;
-                let quads = [Quad::new(lanes, blocks, 2 * b, image), Quad::new(lanes, blocks, 2 * b + 1, image)];
+                let quads = [
+                    (Quad::new(lanes, blocks, 2 * b, image), positions[0]),
+                    (Quad::new(lanes, blocks, 2 * b + 1, image), positions[1]),
+                ];
                 let starts = [outer.blocks.len(), second.blocks.len()];
                 for run in runs {
                     let first = blocks.block_of[run.start as usize].max(b as u32);
                     let last = blocks.block_of[run.end as usize - 1];
                     let near = [&mut outer.blocks, &mut second.blocks];
                     if image == [0; 3] {
-                        find_near::<L, false>(lanes, blocks, &quads, &positions, reach2, first..last + 1, near);
+                        find_near::<L, false>(lanes, blocks, &quads, reach2, b as u32, first..last + 1, near);
                     } else {
-                        find_near::<L, true>(lanes, blocks, &quads, &positions, reach2, first..last + 1, near);
+                        find_near::<L, true>(lanes, blocks, &quads, reach2, b as u32, first..last + 1, near);
                     }
                 }
                 outer.close(2 * b as u32, image, starts[0], outer.blocks.len());
@@ -216,69 +250,65 @@ impl lanes::Kernel for Build<'_> {
     }
 }
 
-/// Appends the blocks of a run that are within reach (squared) of either cluster of a block. No particle has crossed a
+/// Appends the blocks of a run that are within reach (squared) of either cluster of block `b`. No particle has crossed a
 /// face yet.
 #[inline(always)]
 fn find_near<L: Lanes, const IMAGES: bool>(
     lanes: L,
     blocks: &Blocks,
-    quads: &[Quad<L>; 2],
-    positions: &[Position<L>; 2],
+    quads: &[(Quad<L>, Position<L>); 2],
     reach2: L::F,
+    b: u32,
     run: Range<u32>,
     [first, second]: [&mut Vec<u32>; 2],
 ) {
     // Each is written and then kept or not: a branch would be foretold wrongly half of the time.
-    let (mut a, mut b) = (first.len(), second.len());
-    first.resize(a + run.len(), 0);
-    second.resize(b + run.len(), 0);
+    let mut ends = [first.len(), second.len()];
+    first.resize(ends[0] + run.len(), 0);
+    second.resize(ends[1] + run.len(), 0);
+    let reach2 = [reach2; VECTORS];
     for j in run {
-        first[a] = j;
-        second[b] = j;
-        a += usize::from(any_within::<L, IMAGES>(
-            lanes,
-            blocks,
-            &blocks.midway,
-            (&quads[0], &positions[0]),
-            j as usize,
-            [reach2; VECTORS],
-        ));
-        b += usize::from(any_within::<L, IMAGES>(
-            lanes,
-            blocks,
-            &blocks.midway,
-            (&quads[1], &positions[1]),
-            j as usize,
-            [reach2; VECTORS],
-        ));
+        first[ends[0]] = j;
+        second[ends[1]] = j;
+        for half in 0..2 {
+            let pairs = if j == b { own_pairs(half) } else { [u16::MAX; VECTORS] };
+            let near = any_within::<L, IMAGES>(lanes, blocks, &blocks.midway, &quads[half], j as usize, reach2, pairs);
+            ends[half] += usize::from(near);
+        }
     }
-    first.truncate(a);
-    second.truncate(b);
+    first.truncate(ends[0]);
+    second.truncate(ends[1]);
 }
 
-/// Whether any pair of a cluster and block `j`, at `position`, is within its reach (squared).
+/// Whether any of the `pairs` of a cluster and block `j`, at `position`, is within its reach (squared).
 #[inline(always)]
 fn any_within<L: Lanes, const IMAGES: bool>(
     lanes: L,
     blocks: &Blocks,
     position: &[Octet],
-    (quad, own): (&Quad<L>, &Position<L>),
+    (quad, own): &(Quad<L>, Position<L>),
     j: usize,
     reach2: [L::F; VECTORS],
+    pairs: [u16; VECTORS],
 ) -> bool {
     let at = twice(lanes, &position[j]);
     let shifts = if IMAGES { quad.shifts(lanes, blocks, j) } else { [at; VECTORS] };
     let first = squared_length(lanes, displacement::<L, IMAGES>(lanes, &own[0], at, &shifts[0]));
     let second = squared_length(lanes, displacement::<L, IMAGES>(lanes, &own[1], at, &shifts[1]));
-    lanes.lt(first, reach2[0]) | lanes.lt(second, reach2[1]) != 0
+    (lanes.lt(first, reach2[0]) & pairs[0]) | (lanes.lt(second, reach2[1]) & pairs[1]) != 0
 }
 
 /// The box around the particles of block `b` where they are expected.
 fn bounds(blocks: &Blocks, b: usize, radius: f32) -> GroupBox {
     let n = blocks.particles(b).len();
-    let position = &blocks.midway[b].0;
-    let over = |from: f32, f: fn(f32, f32) -> f32| position.map(|x| x[..n].iter().fold(from, |m, &v| f(m, v)));
-    GroupBox { lo: over(f32::INFINITY, f32::min), hi: over(f32::NEG_INFINITY, f32::max), radius }
+    let (mut lo, mut hi) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+    for axis in 0..3 {
+        for &x in &blocks.midway[b].0[axis][..n] {
+            lo[axis] = if x < lo[axis] { x } else { lo[axis] };
+            hi[axis] = if x > hi[axis] { x } else { hi[axis] };
+        }
+    }
+    GroupBox { lo, hi, radius }
 }
 
 struct Prune<'a> {
@@ -301,8 +331,7 @@ impl lanes::Kernel for Prune<'_> {
         for segment in &outer.segments {
             let cluster = segment.cluster as usize;
             let (block, at) = (cluster / 2, cluster % 2 * quad::CLUSTER);
-            let quad = Quad::new(lanes, blocks, cluster, segment.image);
-            let own = quad::position(lanes, midway, cluster);
+            let quad = (Quad::new(lanes, blocks, cluster, segment.image), quad::position(lanes, midway, cluster));
             let budget = &blocks.budget[block];
             let range = |lane: usize| conservative_range(blocks.cutoff + budget[at + lane], blocks.extent);
             let ranges = [lanes.halves(range(0), range(1)), lanes.halves(range(2), range(3))];
@@ -310,13 +339,15 @@ impl lanes::Kernel for Prune<'_> {
             let start = end;
             for &j in &outer.blocks[segment.start as usize..segment.end as usize] {
                 let b = j as usize;
+                let own = segment.own && b == block;
+                let pairs = if own { own_pairs(cluster) } else { [u16::MAX; VECTORS] };
                 let theirs = lanes.twice(&blocks.budget[b]);
                 let reach = [lanes.add(ranges[0], theirs), lanes.add(ranges[1], theirs)];
                 let reach2 = [lanes.mul(reach[0], reach[0]), lanes.mul(reach[1], reach[1])];
                 let near = if with_images || blocks.crossed[b] {
-                    any_within::<L, true>(lanes, blocks, midway, (&quad, &own), b, reach2)
+                    any_within::<L, true>(lanes, blocks, midway, &quad, b, reach2, pairs)
                 } else {
-                    any_within::<L, false>(lanes, blocks, midway, (&quad, &own), b, reach2)
+                    any_within::<L, false>(lanes, blocks, midway, &quad, b, reach2, pairs)
                 };
                 // Written and then kept or not: a branch would be foretold wrongly half of the time.
                 inner.blocks[end] = j;

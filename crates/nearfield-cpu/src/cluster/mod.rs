@@ -32,13 +32,16 @@ mod tests;
 
 use crate::{Grid, Slots, lanes::Isa, physics::Physics};
 use blocks::Blocks;
-use list::{PairList, TASKS_PER_THREAD};
+use list::{PairList, Reach, TASKS_PER_THREAD};
 use nearfield_core::{Truncation, potentials::Potential};
 use std::ops::Range;
 pub(crate) use sums::Output;
 
 /// Particles in a block.
 pub(crate) const BLOCK: usize = 8;
+
+/// Fewest pairs of clusters and blocks to a block in a list that is not sparse; a melt has forty.
+const SPARSE: u64 = 4;
 
 /// Where particles are and how they move, in the engine's order; `dt` is zero where they do not.
 #[derive(Clone, Copy)]
@@ -57,8 +60,18 @@ pub(crate) struct Clusters {
     sums: sums::PageSums,
     /// Whether the list serves: it was built for particles in this order and has not been outrun.
     valid: bool,
+    /// How often the list was pruned.
+    prunings: u64,
     /// Whether all particles keep to their budgets, where that was found out when they moved.
     kept: Option<bool>,
+}
+
+/// The work a list has made.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Counts {
+    /// Pairs of clusters and blocks.
+    pub entries: u64,
+    pub prunings: u64,
 }
 
 /// Moves particles.
@@ -83,10 +96,28 @@ impl Clusters {
         if !kept.unwrap_or_else(|| self.blocks.refresh(moving.position)) {
             self.valid = self.blocks.plan_motion(moving);
             if self.valid {
-                self.list.prune(&self.blocks);
+                self.prune();
             }
         }
         self.valid
+    }
+
+    fn prune(&mut self) {
+        self.list.prune(&self.blocks);
+        self.prunings += 1;
+        if self.is_sparse() {
+            self.sums.lay_out(&mut self.list, &self.blocks, Reach::Inner);
+        }
+    }
+
+    /// Whether so little is near that most pages of sums are spared when only what is pruned is reached.
+    fn is_sparse(&self) -> bool {
+        self.list.entries() < SPARSE * self.blocks.len() as u64
+    }
+
+    /// What the list holds and how often it was pruned.
+    pub fn counts(&self) -> Counts {
+        Counts { entries: self.list.entries(), prunings: self.prunings }
     }
 
     /// The order of particles in which blocks are contiguous: place k is for particle `order[k]` of the grid's input.
@@ -95,17 +126,23 @@ impl Clusters {
     }
 
     /// Builds blocks and list, for particles in [`Clusters::order`]. `skin` is the sum of what two particles may move
-    /// before the list is outrun. False when the list would take more than `budget` bytes: there is none then.
+    /// before the list is outrun; without any it is good for one evaluation. False when the list would take more than
+    /// `budget` bytes: there is none then.
     pub fn build(&mut self, grid: &Grid, physics: &Physics, moving: Moving, skin: f32, budget: u64) -> bool {
         self.blocks.fill(grid, physics, moving, skin);
-        self.valid = self.list.build(grid, &self.blocks, physics.cutoff() + skin, budget);
-        if self.valid {
-            self.sums.lay_out(&mut self.list, &self.blocks, None);
-            // What is left is nothing where there is no skin: the list is then for one evaluation.
-            self.blocks.plan_motion(moving);
-            self.list.prune(&self.blocks);
+        let listed = self.list.build(grid, &self.blocks, physics.cutoff() + skin, budget);
+        self.valid = listed && skin > 0.0;
+        if listed && !(self.valid && self.is_sparse()) {
+            self.sums.lay_out(&mut self.list, &self.blocks, Reach::Outer);
         }
-        self.valid
+        if self.valid {
+            self.blocks.plan_motion(moving);
+            self.prunings = 0;
+            self.prune();
+        } else if listed {
+            self.list.use_once();
+        }
+        listed
     }
 
     /// Builds blocks without a list, for particles in [`Clusters::order`] that are to be evaluated once, with the grid.
@@ -113,7 +150,7 @@ impl Clusters {
         self.valid = false;
         self.blocks.fill(grid, physics, moving, 0.0);
         self.list.divide(&self.blocks, 2 * TASKS_PER_THREAD);
-        self.sums.lay_out(&mut self.list, &self.blocks, Some(grid));
+        self.sums.lay_out(&mut self.list, &self.blocks, Reach::Grid(grid));
     }
 
     /// Forces, and energies where `out` has room for them. Sums of `exact` do not depend on the order of terms. With a

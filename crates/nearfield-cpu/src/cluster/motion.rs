@@ -50,6 +50,9 @@ impl Blocks {
         self.lead = LEAD * motion.limit.max(0.0);
         let (lead, time) = (self.lead, 0.5 * motion.life as f32 * moving.dt);
         let (first, position) = (&self.first, &self.position);
+        if skin == 0.0 {
+            return self.midway.copy_from_slice(position);
+        }
         self.midway.par_iter_mut().with_min_len(PAGE).enumerate().for_each(|(b, midway)| {
             *midway = position[b];
             let [x, y, z] = moving.velocity.map(|v| &v[first[b] as usize..first[b + 1] as usize]);

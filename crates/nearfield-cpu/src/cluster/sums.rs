@@ -7,7 +7,7 @@ use super::{
     BLOCK, Mover,
     blocks::{Blocks, Octet, PAGE},
     lennard_jones::{Kernel, Law},
-    list::{PairList, Pairs},
+    list::{PairList, Pairs, Reach},
     motion::Page,
 };
 use crate::{Grid, lanes, parallel::Scattered};
@@ -74,16 +74,15 @@ fn clear<T: Copy + Default>(values: &mut Vec<T>, touched: &[u32], n: usize) {
 }
 
 impl PageSums {
-    /// Finds which pages tasks touch: those of their lists, or with a `grid`, for there is no list then, those in
-    /// range.
-    pub fn lay_out(&mut self, list: &mut PairList, blocks: &Blocks, grid: Option<&Grid>) {
+    /// Finds which pages tasks touch.
+    pub fn lay_out(&mut self, list: &mut PairList, blocks: &Blocks, reach: Reach) {
         self.n_blocks = blocks.len();
         let n_pages = blocks.n_pages();
         self.tasks.resize_with(list.tasks.len(), TaskSums::default);
         self.tasks.par_iter_mut().zip(&mut list.tasks).with_max_len(1).for_each(|(sums, task)| {
             sums.seen.clear();
             sums.seen.resize(n_pages, false);
-            task.mark_pages(grid, blocks, &mut sums.seen);
+            task.mark_pages(reach, blocks, &mut sums.seen);
             sums.touched.clear();
             sums.touched.extend((0..n_pages as u32).filter(|&p| sums.seen[p as usize]));
         });

@@ -6,10 +6,14 @@ use super::{
     state::State,
 };
 use crate::{
-    cluster::{BLOCK, Clusters, Mover, Output, has_vector_law},
+    cluster::{BLOCK, Clusters, Counts, Mover, Output, has_vector_law},
     parallel::Scattered,
 };
-use nearfield_core::{Method, Plan, Quantities, Radii, Result, SimBox, maintenance::Action};
+use nearfield_core::{
+    Method, Quantities, Radii, Result,
+    maintenance::Action,
+    skin::{ListUse, SkinTuner},
+};
 use std::{
     ops::Range,
     sync::atomic::{AtomicBool, Ordering::Relaxed},
@@ -20,14 +24,23 @@ use std::{
 /// to find the pairs of a batch of clusters again.
 const MOST_BYTES: u64 = 1024;
 
+/// Nanoseconds of one thread for each particle of a new list, for each pair of cluster and block that it holds, for each
+/// of them when it is pruned, and at each step: fitted to the melt with skins of 0.4 to 1.9 (docs/performance.md). Only
+/// their ratios matter. Steps cost more with a thick skin, though they do not read the list, because the order of particles
+/// decays in the longer time that it serves.
+const SORTING: f64 = 140.0;
+const LISTING: f64 = 9.0;
+const PRUNING: f64 = 4.6;
+const STEPPING: f64 = 1.2;
+
 /// The pair list and how it is kept.
 pub(super) struct StoredClusters {
     pub clusters: Clusters,
-    /// At most what keeps range plus skin within half a periodic length.
-    skin: f32,
     listing: Listing,
     /// Evaluations since the list was built.
     age: u64,
+    /// Steps that had been taken when the list was built; none where there is no list.
+    built_at: Option<u64>,
     /// Whether the list must not outlive the present moment: see [`StoredClusters::end`].
     ended: AtomicBool,
 }
@@ -43,20 +56,9 @@ enum Listing {
 }
 
 impl StoredClusters {
-    pub fn new(plan: &Plan, sim_box: &SimBox, radii: &Radii) -> Self {
-        let lengths = sim_box.lengths();
-        let room = (0..3)
-            .filter(|&axis| sim_box.is_periodic(axis))
-            .map(|axis| 0.5 * lengths[axis] - radii.largest())
-            .fold(f32::INFINITY, f32::min);
+    pub fn new(radii: &Radii) -> Self {
         let listing = if radii.is_uniform() { Listing::Possible } else { Listing::DifferentRadii };
-        Self {
-            clusters: Clusters::default(),
-            skin: plan.skin.min(room).max(0.0),
-            listing,
-            age: 0,
-            ended: AtomicBool::new(false),
-        }
+        Self { clusters: Clusters::default(), listing, age: 0, built_at: None, ended: AtomicBool::new(false) }
     }
 
     /// Has list and forces made anew before the next step. Another engine that takes the particles over has no list:
@@ -71,40 +73,70 @@ impl StoredClusters {
         if ended {
             // With what it has learned of the particles' motion.
             self.clusters = Clusters::default();
+            self.built_at = None;
         }
         ended
+    }
+
+    /// Forgets the list: particles were put in another order.
+    pub fn invalidate(&mut self) {
+        self.clusters.invalidate();
+        self.built_at = None;
+    }
+
+    /// Has the skin of the next list chosen, after what the last one was good for.
+    fn choose_skin(&mut self, skin: &mut SkinTuner, state: &State, dt: f32, steps: u64) {
+        let last = self.built_at.take().map(|built| (steps - built, self.clusters.counts()));
+        if let Some((steps, Counts { entries, prunings })) = last {
+            let per_step = prunings.saturating_sub(1) as f64 / steps.max(1) as f64;
+            skin.record(ListUse {
+                steps,
+                sorting: SORTING * state.len() as f64,
+                listing: (LISTING + PRUNING) * entries as f64,
+                reading: (STEPPING + PRUNING * per_step) * entries as f64,
+            });
+        } else if skin.is_auto() {
+            skin.guess(dt * state.largest_speed());
+        }
     }
 }
 
 impl Loaded {
     /// Brings the list up to date with the positions, or the grid where there can be no list.
     pub fn prepare_clusters(&mut self) {
-        let Self { plan, physics, state, results, upkeep, clusters: stored, report, .. } = self;
+        let Self { plan, physics, state, upkeep, clusters: stored, report, skin, dt, steps, .. } = self;
         stored.age += 1;
         let start = Instant::now();
         let list = stored.listing == Listing::Possible;
-        let serves = list && stored.clusters.refresh(state.moving_slices(self.dt));
+        let serves = list && stored.clusters.refresh(state.moving_slices(*dt));
         report.refit_seconds += start.elapsed().as_secs_f64();
         if serves {
             return;
         }
         let start = Instant::now();
+        if list {
+            stored.choose_skin(skin, state, *dt, *steps);
+        }
         let input = state.input(physics, state.radii(physics));
         upkeep.update(Action::Build, &input, report);
         let gridded = start.elapsed();
         if stored.listing != Listing::DifferentRadii {
             let grid = upkeep.index.grid().expect("cluster has a grid");
             let order = stored.clusters.order(grid);
+            // Forces are computed anew before they are looked at.
             state.reorder(order);
-            results.reorder(order);
-            let moving = state.moving_slices(self.dt);
+            let moving = state.moving_slices(*dt);
             let budget = plan.memory_budget.min(MOST_BYTES * state.len() as u64);
-            if list && stored.clusters.build(grid, physics, moving, stored.skin, budget) {
-                report.list_builds += 1;
-                if stored.age == 1 && stored.skin > 0.0 && report.list_builds > 1 {
+            let mut fits = list && stored.clusters.build(grid, physics, moving, skin.skin(), budget);
+            while list && !fits && skin.shrink() {
+                fits = stored.clusters.build(grid, physics, moving, skin.skin(), budget);
+            }
+            if fits {
+                (report.skin, report.list_builds) = (skin.skin(), report.list_builds + 1);
+                if stored.age == 1 && report.skin > 0.0 && report.list_builds > 1 {
                     report.dangerous_builds += 1;
                 }
-                stored.age = 0;
+                (stored.age, stored.built_at) = (0, Some(*steps));
             } else {
                 if list {
                     (stored.listing, stored.clusters) = (Listing::TooLarge, Clusters::default());
@@ -185,6 +217,7 @@ impl Loaded {
             positions: &positions,
         };
         self.clusters.clusters.advance(&self.physics, &mover);
+        self.steps += 1;
         self.account(start.elapsed().as_secs_f64());
         match forces.first() {
             Some(particle) => Err(self.diagnose(particle, step)),

@@ -16,6 +16,7 @@ use crate::{
 use nearfield_core::{
     Error, Method, Plan, Quantities, Report, Result, System,
     maintenance::{Action, Motion},
+    skin::SkinTuner,
 };
 use std::{
     sync::atomic::{AtomicU32, Ordering::Relaxed},
@@ -32,8 +33,12 @@ pub(super) struct Loaded {
     pub scatter: ScatterSums,
     pub list: StoredList,
     pub clusters: StoredClusters,
+    /// The skin of either kind of list.
+    pub skin: SkinTuner,
     /// Time step of the run; zero outside of one.
     pub dt: f32,
+    /// Steps taken since the system was loaded.
+    pub steps: u64,
     /// Positions at the last structure build, for policies that ask.
     pub reference: Reference,
     pub report: Report,
@@ -54,9 +59,11 @@ impl Loaded {
             results: Results::default(),
             upkeep: Upkeep::new(plan),
             scatter: ScatterSums::default(),
-            list: StoredList::new(plan, &physics, &system.radii),
-            clusters: StoredClusters::new(plan, &physics.sim_box, &system.radii),
+            list: StoredList::new(),
+            clusters: StoredClusters::new(&system.radii),
+            skin: SkinTuner::new(plan.skin, system.radii.mean(), physics.sim_box.room_around(system.radii.largest())),
             dt: 0.0,
+            steps: 0,
             reference: Reference::default(),
             report: Report::default(),
             record_history: false,
@@ -79,8 +86,8 @@ impl Loaded {
             self.account(start.elapsed().as_secs_f64());
             return self.accept(finite, step);
         }
-        let Self { plan, physics, state, results, upkeep, scatter: sums, list, report, .. } = self;
-        let structure = upkeep.index.structure();
+        let Self { plan, physics, state, results, upkeep, scatter: sums, list, skin, report, .. } = self;
+        let mut structure = upkeep.index.structure();
         let sink = results.sink();
         let finish = |i: u32, sums: &Sums| {
             watch.see(sums.force, state.id[i as usize]);
@@ -102,13 +109,12 @@ impl Loaded {
                 sums.for_each(&finish);
             }
             Method::RtList => {
-                let around = Around { state, physics, plan, structure, sums, report };
-                if list.gather(around, &finish) == Outcome::NeedsBuildWithoutSkin {
+                while list.gather(Around { state, physics, plan, structure, sums, skin, report }, &finish)
+                    == Outcome::NeedsLessSkin
+                {
                     let input = state.input(physics, list.radii(state, physics));
                     upkeep.update(Action::Build, &input, report);
-                    let structure = upkeep.index.structure();
-                    let again = list.gather(Around { state, physics, plan, structure, sums, report }, &finish);
-                    debug_assert_eq!(again, Outcome::Done, "there is no skin left to take off");
+                    structure = upkeep.index.structure();
                 }
             }
         }
@@ -138,8 +144,11 @@ impl Loaded {
         if self.plan.method == Method::Cluster {
             return self.prepare_clusters();
         }
-        if self.plan.method.uses_list() && self.list.is_fresh(&self.state, &self.physics) {
-            return;
+        if self.plan.method == Method::RtList {
+            if self.list.is_fresh(&self.state, &self.physics) {
+                return;
+            }
+            self.list.choose_skin(&mut self.skin, &self.state, self.dt, self.steps);
         }
         let motion = if self.upkeep.needs_motion() { self.motion() } else { Motion::default() };
         let action = self.upkeep.next(motion);

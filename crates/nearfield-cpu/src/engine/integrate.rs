@@ -70,7 +70,7 @@ impl Integrator {
     /// Whether [`Integrator::start_many`] and [`Integrator::finish_many`] do what [`Integrator::start`] and
     /// [`Integrator::finish`] do, bit for bit.
     pub fn has_fast_path(&self) -> bool {
-        self.langevin.is_none() && self.speed_limit == f32::INFINITY
+        self.langevin.is_none()
     }
 
     /// First half kick and drift of neighbouring particles. Without types (`kind`) there is only one. Calls `settle`
@@ -108,7 +108,7 @@ impl Integrator {
     }
 
     /// Second half kick of a step, then first half kick and drift of the next, of neighbouring particles along one
-    /// axis. Whether all are finite and in the box.
+    /// axis. Whether all are finite and in the box, and none is so fast that the limit may concern it.
     #[inline(always)]
     pub fn step_many<const N: usize>(
         &self,
@@ -123,10 +123,14 @@ impl Integrator {
             *half_kick = self.half_kick[kind as usize];
         }
         let (lo, hi) = (self.sim_box.lo()[axis], self.sim_box.hi()[axis]);
+        // Of each component: below it, rounding included, a particle is slower than the limit.
+        let slow = 0.577 * self.speed_limit;
         let mut outside = 0;
         for k in 0..N {
             v[k] += half_kick[k] * force[k];
+            outside |= u32::from(v[k].abs() > slow);
             v[k] += half_kick[k] * force[k];
+            outside |= u32::from(v[k].abs() > slow);
             x[k] += self.dt * v[k];
             outside |= u32::from(!((x[k] >= lo) & (x[k] < hi)));
         }
@@ -135,8 +139,8 @@ impl Integrator {
 
     /// Half kick of neighbouring particles.
     #[inline(always)]
-    pub fn kick_many(&self, velocity: [&mut [f32]; 3], force: [&[f32]; 3], kind: &[u32]) {
-        for (velocity, force) in velocity.into_iter().zip(force) {
+    pub fn kick_many(&self, mut velocity: [&mut [f32]; 3], force: [&[f32]; 3], kind: &[u32]) {
+        for (velocity, force) in velocity.iter_mut().zip(force) {
             if kind.is_empty() {
                 let half_kick = self.half_kick[0];
                 for (v, f) in velocity.iter_mut().zip(force) {
@@ -146,6 +150,21 @@ impl Integrator {
                 for ((v, f), &kind) in velocity.iter_mut().zip(force).zip(kind) {
                     *v += self.half_kick[kind as usize] * f;
                 }
+            }
+        }
+        if self.speed_limit < f32::INFINITY {
+            self.limit_many(velocity);
+        }
+    }
+
+    /// Shortens the velocities of those that the limit concerns.
+    fn limit_many(&self, [vx, vy, vz]: [&mut [f32]; 3]) {
+        let slow = 0.577 * self.speed_limit;
+        for ((x, y), z) in vx.iter_mut().zip(vy).zip(vz) {
+            if x.abs().max(y.abs()).max(z.abs()) > slow {
+                let mut p = Moving { position: [0.0; 3], velocity: [*x, *y, *z], image: [0; 3] };
+                self.limit(&mut p);
+                [*x, *y, *z] = p.velocity;
             }
         }
     }

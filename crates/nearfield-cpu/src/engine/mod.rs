@@ -95,7 +95,11 @@ impl Engine for CpuEngine {
         if let Some(loaded) = &self.loaded {
             loaded.clusters.end();
         }
-        let order = |loaded: &Loaded| MemoryOrder { ids: loaded.state.id.clone(), sorted_at: loaded.sorted_at };
+        let order = |loaded: &Loaded| MemoryOrder {
+            ids: loaded.state.id.clone(),
+            sorted_at: loaded.sorted_at,
+            skin: loaded.skin.learned(),
+        };
         Ok(self.loaded.as_deref().map(order).unwrap_or_default())
     }
 
@@ -103,7 +107,8 @@ impl Engine for CpuEngine {
         if let Some(loaded) = self.loaded.as_deref_mut().filter(|_| !order.ids.is_empty()) {
             loaded.state.reorder(&order.ids);
             loaded.sorted_at = order.sorted_at;
-            loaded.clusters.clusters.invalidate();
+            loaded.clusters.invalidate();
+            loaded.skin.set_learned(order.skin);
         }
         Ok(())
     }

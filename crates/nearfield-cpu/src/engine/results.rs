@@ -38,8 +38,9 @@ impl Results {
 
     /// Forces follow their particles; the rest is computed anew anyway.
     pub fn reorder(&mut self, order: &[u32]) {
+        let mut spare = Vec::new();
         for axis in self.force.axes_mut() {
-            permute(axis, order);
+            permute(axis, &mut spare, order);
         }
     }
 

@@ -7,16 +7,26 @@ use crate::{
     kernel::{Finish, RowSource, ScatterSums, gather_rows, scatter},
     physics::Physics,
 };
-use nearfield_core::{ListKind, ListRequest, NeighborList, Plan, Radii, Report};
+use nearfield_core::{
+    ListKind, ListRequest, NeighborList, Plan, Radii, Report,
+    skin::{ListUse, SkinTuner},
+};
 use rayon::prelude::*;
 
 /// Bytes of an entry, index and image, in a task's buffer and in the list.
 const BYTES_PER_ENTRY: u64 = 2 * (4 + 3);
 
+/// Nanoseconds of one thread for each particle of a new list, for each of its entries, and for each of them at each step:
+/// fitted to the melt with skins of 0.1 to 0.8 (docs/performance.md). Only their ratios matter.
+const SORTING: f64 = 60.0;
+const LISTING: f64 = 4.4;
+const READING: f64 = 9.5;
+
 /// A list of everything within range plus skin, and how far particles have moved since.
 pub(super) struct StoredList {
-    /// At most what keeps range plus skin within half a periodic length; zero once the list has proved too large.
+    /// Of the list; zero once one has proved too large.
     skin: f32,
+    too_large: bool,
     valid: bool,
     list: NeighborList,
     builder: ListBuilder,
@@ -26,6 +36,8 @@ pub(super) struct StoredList {
     inflated: Vec<f32>,
     /// Evaluations since the list was built.
     age: u64,
+    /// Steps that had been taken when the list was built.
+    built_at: Option<u64>,
 }
 
 /// What a query of the list needs.
@@ -35,6 +47,7 @@ pub(super) struct Around<'a> {
     pub plan: &'a Plan,
     pub structure: &'a dyn Structure,
     pub sums: &'a mut ScatterSums,
+    pub skin: &'a mut SkinTuner,
     pub report: &'a mut Report,
 }
 
@@ -43,20 +56,16 @@ pub(super) struct Around<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Outcome {
     Done,
-    /// The list is too large to be kept: the structure must be built again, without skin, for the query to be asked
-    /// once more.
-    NeedsBuildWithoutSkin,
+    /// The list is too large to be kept: the structure must be built again, with less skin or none, for the query to be
+    /// asked once more.
+    NeedsLessSkin,
 }
 
 impl StoredList {
-    pub fn new(plan: &Plan, physics: &Physics, radii: &Radii) -> Self {
-        let lengths = physics.sim_box.lengths();
-        let room = (0..3)
-            .filter(|&axis| physics.sim_box.is_periodic(axis))
-            .map(|axis| 0.5 * lengths[axis] - radii.largest())
-            .fold(f32::INFINITY, f32::min);
+    pub fn new() -> Self {
         Self {
-            skin: if plan.method.uses_list() { plan.skin.min(room).max(0.0) } else { 0.0 },
+            skin: 0.0,
+            too_large: false,
             valid: false,
             list: NeighborList {
                 kind: ListKind::Full,
@@ -70,6 +79,7 @@ impl StoredList {
             crossings: Vec::new(),
             inflated: Vec::new(),
             age: 0,
+            built_at: None,
         }
     }
 
@@ -80,6 +90,25 @@ impl StoredList {
         self.valid
             && self.skin > 0.0
             && 2.0 * self.reference.largest(state, &physics.sim_box) <= f64::from(self.skin) * (1.0 - 1e-5)
+    }
+
+    /// Has the skin of the next list chosen, after what the last one was good for.
+    pub fn choose_skin(&mut self, skin: &mut SkinTuner, state: &State, dt: f32, steps: u64) {
+        if self.too_large {
+            return;
+        }
+        if let Some(built) = self.built_at.replace(steps) {
+            let entries = self.list.n_entries() as f64;
+            skin.record(ListUse {
+                steps: steps - built,
+                sorting: SORTING * state.len() as f64,
+                listing: LISTING * entries,
+                reading: READING * entries,
+            });
+        } else if skin.is_auto() {
+            skin.guess(dt * state.largest_speed());
+        }
+        self.skin = skin.skin();
     }
 
     /// Forgets the list: particles were reordered or have moved too far.
@@ -98,15 +127,16 @@ impl StoredList {
 
     /// Sums over the rows of the list, building it first when there is none.
     pub fn gather(&mut self, around: Around, finish: Finish) -> Outcome {
-        let Around { state, physics, plan, structure, sums, report } = around;
+        let Around { state, physics, plan, structure, sums, skin, report } = around;
         let input = state.input(physics, state.radii(physics));
         if !self.valid {
             let radii = search_radii(self.skin, &self.inflated, state, physics);
             let search = state.input(physics, radii);
             if let Some(batches) = batches(&self.list, &mut self.builder, structure, &search, plan.memory_budget) {
                 if self.skin > 0.0 {
-                    self.skin = 0.0;
-                    return Outcome::NeedsBuildWithoutSkin;
+                    self.too_large = !skin.shrink();
+                    self.skin = if self.too_large { 0.0 } else { skin.skin() };
+                    return Outcome::NeedsLessSkin;
                 }
                 report.batched_evaluations += 1;
                 if structure.complete() {
@@ -119,7 +149,7 @@ impl StoredList {
                 }
                 return Outcome::Done;
             }
-            report.list_builds += 1;
+            (report.skin, report.list_builds) = (self.skin, report.list_builds + 1);
             if self.age == 1 && self.skin > 0.0 && report.list_builds > 1 {
                 report.dangerous_builds += 1;
             }

@@ -85,6 +85,7 @@ impl Loaded {
                 return Err(self.diagnose(particle, step));
             }
             next.swap(&mut self.state);
+            self.steps += 1;
             self.check_positions(&positions, step + 1)?;
         }
         self.evaluate(quantities, from + steps)?;
@@ -105,6 +106,7 @@ impl Loaded {
             });
         }
         self.forces_valid = false;
+        self.steps += 1;
         self.report.integrate_seconds += start.elapsed().as_secs_f64();
         self.check_positions(&watch, step)
     }

@@ -16,6 +16,15 @@ pub(super) struct State {
     pub radius: Vec<f32>,
     /// Input index of each particle.
     pub id: Vec<u32>,
+    spare: Spare,
+}
+
+/// Arrays to put particles in another order into.
+#[derive(Debug, Default)]
+struct Spare {
+    floats: Vec<f32>,
+    images: Vec<[i32; 3]>,
+    numbers: Vec<u32>,
 }
 
 impl State {
@@ -31,6 +40,7 @@ impl State {
                 Radii::PerParticle(radii) => radii.clone(),
             },
             id: (0..particles.len() as u32).collect(),
+            spare: Spare::default(),
         }
     }
 
@@ -62,6 +72,13 @@ impl State {
         exact_sum(self.len(), |i| self.kinetic_energy_of(i, types))
     }
 
+    /// The speed of the fastest particle.
+    pub fn largest_speed(&self) -> f32 {
+        let [x, y, z] = self.velocity.axes();
+        let squares = (x, y, z).into_par_iter().with_min_len(4096).map(|(x, y, z)| x * x + y * y + z * z);
+        squares.reduce(|| 0.0, f32::max).sqrt()
+    }
+
     /// The particles as a structure's input, with the radii that the structure shall cover.
     pub fn input<'a>(&'a self, physics: &'a Physics, radii: InputRadii<'a>) -> Input<'a> {
         let [x, y, z] = self.position.axes();
@@ -88,15 +105,16 @@ impl State {
 
     /// Puts particle `order[k]` at place k.
     pub fn reorder(&mut self, order: &[u32]) {
+        let Spare { floats, images, numbers } = &mut self.spare;
         for vectors in [&mut self.position, &mut self.velocity] {
             for axis in vectors.axes_mut() {
-                permute(axis, order);
+                permute(axis, floats, order);
             }
         }
-        permute(&mut self.image, order);
-        permute(&mut self.kind, order);
-        permute(&mut self.radius, order);
-        permute(&mut self.id, order);
+        permute(&mut self.image, images, order);
+        permute(&mut self.kind, numbers, order);
+        permute(&mut self.radius, floats, order);
+        permute(&mut self.id, numbers, order);
     }
 
     /// Copies positions, velocities and images out in input order.
@@ -117,12 +135,17 @@ impl State {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.id.capacity() * (6 * 4 + 12 + 4) + 4 * (self.kind.capacity() + self.radius.capacity())
+        let Spare { floats, images, numbers } = &self.spare;
+        self.id.capacity() * (6 * 4 + 12 + 4)
+            + 4 * (self.kind.capacity() + self.radius.capacity() + floats.capacity() + numbers.capacity())
+            + 12 * images.capacity()
     }
 }
 
-pub(super) fn permute<T: Copy + Send + Sync>(values: &mut Vec<T>, order: &[u32]) {
+/// Puts value `order[k]` at place k, by way of `spare`, which then holds what was there.
+pub(super) fn permute<T: Copy + Send + Sync>(values: &mut Vec<T>, spare: &mut Vec<T>, order: &[u32]) {
     if !values.is_empty() {
-        *values = order.par_iter().with_min_len(4096).map(|&i| values[i as usize]).collect();
+        order.par_iter().with_min_len(4096).map(|&i| values[i as usize]).collect_into_vec(spare);
+        std::mem::swap(values, spare);
     }
 }

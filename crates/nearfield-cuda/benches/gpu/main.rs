@@ -10,7 +10,7 @@ mod measure;
 
 use clap::{Parser, ValueEnum};
 use measure::{Bench, Outcome};
-use nearfield_core::{Boundary, Engine, Images, Maintenance, Method, Plan};
+use nearfield_core::{Boundary, Engine, Images, Maintenance, Method, Plan, Skin};
 use nearfield_cuda::CudaEngine;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -101,7 +101,7 @@ fn asked(arguments: &Arguments, default: &[Method]) -> Vec<Method> {
 
 fn plan(method: Method, arguments: &Arguments) -> Plan {
     let plan = Plan::new(method);
-    Plan { skin: arguments.skin.unwrap_or(plan.skin), ..plan }
+    Plan { skin: arguments.skin.map_or(plan.skin, Skin::Fixed), ..plan }
 }
 
 /// Paper A's table 2.

@@ -83,12 +83,7 @@ pub(crate) struct StepQuery<'a> {
 impl ClusterList {
     /// No list yet, with a skin as far as the box allows it: no pair may be within range and skin at two images.
     pub fn new(gpu: &Arc<dyn Gpu>, skin: f32, physics: &Physics) -> Self {
-        let lengths = physics.sim_box.lengths();
-        let room = (0..3)
-            .filter(|&axis| physics.sim_box.is_periodic(axis))
-            .map(|axis| 0.5 * lengths[axis] * (1.0 - 4.0 * f32::EPSILON) - physics.largest)
-            .fold(f32::INFINITY, f32::min);
-        let skin = skin.min(room).max(0.0);
+        let skin = skin.min(physics.sim_box.room_around(physics.largest)).max(0.0);
         // The margins cover roundings of displacements and of coordinates.
         let limit = 0.5 * skin * (1.0 - 1e-5) - physics.slack;
         Self {

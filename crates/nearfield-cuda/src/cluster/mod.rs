@@ -41,7 +41,7 @@ impl Clusters {
             gpu: gpu.clone(),
             grid: Grid::new(gpu),
             variant: Variant::Pairs,
-            list: ClusterList::new(gpu, plan.skin, physics),
+            list: ClusterList::new(gpu, plan.skin.or_usual(), physics),
             pace: Pace::new(),
             deterministic: plan.deterministic,
             memory_budget: plan.memory_budget,

@@ -172,7 +172,7 @@ impl Engine for CudaEngine {
 
     fn memory_order(&self) -> Result<MemoryOrder> {
         let Some(loaded) = &self.loaded else { return Ok(MemoryOrder::default()) };
-        Ok(MemoryOrder { ids: loaded.state.id.download()?, sorted_at: loaded.sorted_at })
+        Ok(MemoryOrder { ids: loaded.state.id.download()?, sorted_at: loaded.sorted_at, ..MemoryOrder::default() })
     }
 
     fn set_memory_order(&mut self, order: &MemoryOrder) -> Result<()> {

@@ -55,14 +55,9 @@ pub enum Outcome {
 impl StoredList {
     /// No list yet, with the skin of a plan as far as the box allows it.
     pub fn new(gpu: &Arc<dyn Gpu>, plan: &Plan, sim_box: &SimBox, largest_radius: f32) -> Self {
-        let lengths = sim_box.lengths();
-        let room = (0..3)
-            .filter(|&axis| sim_box.is_periodic(axis))
-            .map(|axis| 0.5 * lengths[axis] * (1.0 - 4.0 * f32::EPSILON) - largest_radius)
-            .fold(f32::INFINITY, f32::min);
         Self {
             gpu: gpu.clone(),
-            skin: plan.skin.min(room).max(0.0),
+            skin: plan.skin.or_usual().min(sim_box.room_around(largest_radius)).max(0.0),
             valid: false,
             rows: DeviceList::new(gpu),
             reference: Reference::new(gpu),

@@ -1,7 +1,7 @@
 //! `[method]`: how to compute.
 
 use super::{Bytes, Device, Error, Result, text};
-use nearfield_core::{Images, Maintenance, Method, Order, Plan};
+use nearfield_core::{Images, Maintenance, Method, Order, Plan, Skin};
 use serde::{Deserialize, Serialize};
 use std::{fmt, str::FromStr};
 
@@ -51,8 +51,8 @@ pub struct MethodConfig {
     /// Memory order.
     #[serde(with = "text")]
     pub order: Order,
-    /// Verlet skin of list methods, \[length\].
-    pub skin: f64,
+    /// Verlet skin of list methods.
+    pub skin: Skin,
     /// Sum forces independently of order.
     pub deterministic: bool,
     /// Most bytes a stored neighbour list may take.
@@ -67,7 +67,7 @@ impl Default for MethodConfig {
             maintenance: Maintenance::Gradient,
             images: Choice::Auto,
             order: Order::Morton,
-            skin: 0.3,
+            skin: Skin::Auto,
             deterministic: false,
             memory_budget: Bytes(4 << 30),
         }
@@ -76,7 +76,9 @@ impl Default for MethodConfig {
 
 impl MethodConfig {
     pub(super) fn validate(&self) -> Result<()> {
-        if !((self.skin as f32).is_finite() && self.skin >= 0.0) {
+        if let Skin::Fixed(skin) = self.skin
+            && !(skin.is_finite() && skin >= 0.0)
+        {
             return Err(Error::invalid("method.skin", self.skin, "must be zero (a list each step) or positive"));
         }
         if self.memory_budget.0 == 0 {
@@ -96,7 +98,7 @@ impl MethodConfig {
             images,
             order: self.order,
             maintenance: self.maintenance,
-            skin: self.skin as f32,
+            skin: self.skin,
             deterministic: self.deterministic,
             memory_budget: self.memory_budget.0,
         }

@@ -2,7 +2,7 @@
 
 use super::ColorBy;
 use crate::{NeighborSearch, Result};
-use nearfield_core::{Engine, Method, PerParticle, Plan, Quantities, Radii, System};
+use nearfield_core::{Engine, Method, PerParticle, Plan, Quantities, Radii, Skin, System};
 use nearfield_cpu::CpuEngine;
 
 /// Part of the particles that may lie outside the colours' range, on each side.
@@ -21,7 +21,7 @@ pub(super) fn of(system: &System, by: ColorBy) -> Result<Option<Vec<f64>>> {
         }
         ColorBy::Energy => {
             let mut engine = CpuEngine::new();
-            engine.load(system, &Plan { skin: 0.0, ..Plan::new(Method::Cell) })?;
+            engine.load(system, &Plan { skin: Skin::NONE, ..Plan::new(Method::Cell) })?;
             engine.evaluate(Quantities::ALL)?;
             let mut results = PerParticle::default();
             engine.per_particle(&mut results)?;

@@ -62,6 +62,8 @@ pub struct Record {
     pub energy_meter: String,
     /// The last thermodynamic state.
     pub thermo: Option<Thermo>,
+    /// Mean number of steps that a stored neighbour list served; absent without lists. Its skin is in the report.
+    pub steps_per_list: Option<f64>,
     /// Rebuilds, refits, lists and the times they took.
     pub report: Report,
     /// The full configuration.
@@ -100,6 +102,7 @@ impl Record {
             energy_joules: None,
             energy_meter,
             thermo: None,
+            steps_per_list: None,
             report: Report::default(),
             config: config.clone(),
             start: Instant::now(),
@@ -132,6 +135,7 @@ impl Record {
         self.steps_per_second = steps / self.wall_seconds;
         self.particle_steps_per_second = self.steps_per_second * self.n_particles as f64;
         self.report = self.report_with(simulation.report());
+        self.steps_per_list = self.report.steps_per_list();
     }
 
     /// Keeps the meter going: its counters start again now and then.

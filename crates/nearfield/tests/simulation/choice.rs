@@ -3,7 +3,7 @@
 use crate::{crystal, smooth};
 use nearfield::{
     Boundary, Device, Dynamics, Interaction, Maintenance, Method, Order, Particles, Plan, Radii, SimBox, Simulation,
-    System,
+    Skin, System,
 };
 use std::ops::ControlFlow;
 
@@ -44,7 +44,12 @@ fn a_long_run_tries_some_and_moves_as_if_the_fastest_had_been_asked_for() {
 
 #[test]
 fn auto_keeps_every_setting_but_the_method() {
-    let plan = Plan { order: Order::Cell, maintenance: Maintenance::Fixed(7), skin: 0.2, ..Plan::new(Method::Brute) };
+    let plan = Plan {
+        order: Order::Cell,
+        maintenance: Maintenance::Fixed(7),
+        skin: Skin::Fixed(0.2),
+        ..Plan::new(Method::Brute)
+    };
     let simulation = Simulation::builder(crystal(500, 0.8442, 1.0)).plan(plan).build().unwrap();
     assert_eq!(*simulation.plan(), Plan { method: simulation.choice().method, ..plan });
 }

@@ -7,7 +7,7 @@ mod steps;
 
 use super::{Case, Measure, Measurement, Options, Outcome, Spread};
 use crate::{Device, Result, energy::attach_meter};
-use nearfield_core::{Dynamics, Engine, Plan, Quantities, System};
+use nearfield_core::{Dynamics, Engine, Plan, Quantities, Skin, System};
 use std::time::Instant;
 
 /// Evaluations that take this many times the seconds of a measurement are not repeated.
@@ -47,7 +47,7 @@ pub(super) fn measure(
     engine.load(system, plan)?;
     attach_meter(engine, plan, options.device)?;
     let (dynamics, device, seconds) = (case.start.dynamics, options.device, options.seconds());
-    let keeps_lists = plan.method.uses_list() && plan.skin > 0.0;
+    let keeps_lists = plan.method.uses_list() && plan.skin != Skin::NONE;
     let mut trial = Trial { engine, system, dynamics, device, keeps_lists, seconds, step: 0 };
     let (mut measurement, is_slow) = trial.first_look()?;
     let predicted_seconds = match case.measure {

@@ -15,7 +15,7 @@ use super::{
     start::{POSITIONS, PaperRadii},
 };
 use crate::generate::Positions;
-use nearfield_core::{Boundary, Images, Maintenance, Method, Plan};
+use nearfield_core::{Boundary, Images, Maintenance, Method, Plan, Skin};
 
 /// Particles above which all pairs are too many to be of interest.
 const BRUTE_LIMIT: usize = 20_000;
@@ -29,7 +29,7 @@ fn plans(n: usize) -> Vec<Plan> {
 /// Plans whose evaluations of particles at rest each build everything anew, as a single evaluation must. (A list that
 /// lasts many steps, or a refitted tree, would look cheaper than it is.)
 fn plans_at_rest(n: usize) -> Vec<Plan> {
-    let at_rest = |plan: Plan| Plan { maintenance: Maintenance::Every, skin: 0.0, ..plan };
+    let at_rest = |plan: Plan| Plan { maintenance: Maintenance::Every, skin: Skin::NONE, ..plan };
     plans(n).into_iter().map(at_rest).collect()
 }
 

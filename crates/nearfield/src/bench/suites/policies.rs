@@ -9,7 +9,7 @@ use crate::bench::{
     Case, Measure, Options, Start,
     start::{POSITIONS, PaperRadii},
 };
-use nearfield_core::{Boundary, Dynamics, Maintenance, Method, Plan};
+use nearfield_core::{Boundary, Dynamics, Maintenance, Method, Plan, Skin};
 
 /// The paper's number of particles and steps.
 const PAPER: (usize, u64) = (140_000, 2000);
@@ -35,7 +35,7 @@ pub(in crate::bench) fn cases(options: &Options) -> Vec<Case> {
                 let mut start = Start::paper_a(n, positions, radii, Boundary::Periodic, scale);
                 start.generate.temperature = 10.0;
                 start.dynamics = Dynamics { max_displacement: 1.0, ..Dynamics::nve(0.05) };
-                let plan = |maintenance| Plan { maintenance, skin: 0.0, ..Plan::new(Method::RtList) };
+                let plan = |maintenance| Plan { maintenance, skin: Skin::NONE, ..Plan::new(Method::RtList) };
                 let plans = POLICIES.map(plan).to_vec();
                 cases.push(Case { family: name.clone(), name, start, plans, measure: Measure::Series { steps } });
             }

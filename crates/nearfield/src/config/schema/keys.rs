@@ -9,6 +9,7 @@ const SWITCH: Accepts = Accepts::Words("true or false");
 const TEXT: Accepts = Accepts::Words("text in quotes");
 const RANGE: Accepts = Accepts::Words("two numbers [low, high]");
 const VECTOR: Accepts = Accepts::Words("three numbers [x, y, z]");
+const SKIN: Accepts = Accepts::Words("a number, or \"auto\"");
 const MEMORY: Accepts = Accepts::Words("bytes, or text such as \"4 GiB\"");
 const BOUNDARY: Accepts = Accepts::Names(|| vec!["periodic", "wall", "open"]);
 
@@ -122,7 +123,7 @@ const METHOD: &[Key] = &[
     ),
     key("images", Accepts::Names(|| or_auto(Images::ALL.iter().map(|i| i.name()))), "periodic images of BVH methods"),
     key("order", Accepts::Names(|| Order::ALL.iter().map(|o| o.name()).collect()), "of particles in memory"),
-    key("skin", NUMBER, "list methods: margin around the cutoff; 0 builds the list each step"),
+    key("skin", SKIN, "list methods: margin around the cutoff, or \"auto\"; 0 builds the list each step"),
     key("deterministic", SWITCH, "bitwise equal results for any method and number of threads"),
     key("memory_budget", MEMORY, "most memory a stored neighbour list may take"),
 ];
