@@ -191,6 +191,7 @@ impl<P: Law, const ENERGY: bool> lanes::Kernel for Kernel<'_, P, ENERGY> {
         // Slices of one length need but one test of an index.
         let n = blocks.len();
         let view = View {
+            lanes,
             law,
             blocks,
             position: &blocks.position[..n],
@@ -220,19 +221,19 @@ impl<P: Law, const ENERGY: bool> lanes::Kernel for Kernel<'_, P, ENERGY> {
                 let pairs = [lanes.mask(first), lanes.mask(second)];
                 let mut apart = Apart { blocks: &mut *crossed, n: 0 };
                 if view.crossed[block] {
-                    sums = view.add_segment::<ENERGY, CROSSED>(lanes, &of, listed, pairs, sums, &mut to, &mut apart);
+                    sums = view.add_segment::<ENERGY, CROSSED>(&of, listed, pairs, sums, &mut to, &mut apart);
                     continue;
                 }
                 // Its own block has not crossed either, so `pairs` is for none of those put apart.
                 if segment.image == [0; 3] {
-                    sums = view.add_segment::<ENERGY, HERE>(lanes, &of, listed, pairs, sums, &mut to, &mut apart);
+                    sums = view.add_segment::<ENERGY, HERE>(&of, listed, pairs, sums, &mut to, &mut apart);
                 } else {
-                    sums = view.add_segment::<ENERGY, IMAGE>(lanes, &of, listed, pairs, sums, &mut to, &mut apart);
+                    sums = view.add_segment::<ENERGY, IMAGE>(&of, listed, pairs, sums, &mut to, &mut apart);
                 }
                 let Apart { blocks, n } = apart;
                 if n > 0 {
                     let mut none = Apart { blocks: &mut [], n: 0 };
-                    sums = view.add_segment::<ENERGY, CROSSED>(lanes, &of, &blocks[..n], all, sums, &mut to, &mut none);
+                    sums = view.add_segment::<ENERGY, CROSSED>(&of, &blocks[..n], all, sums, &mut to, &mut none);
                 }
             }
             let force = lanes.sum_halves(sums.force[0], sums.force[1]);
@@ -291,6 +292,7 @@ struct Near<L: Lanes> {
 
 /// What the kernel reads.
 struct View<'a, P, L: Lanes> {
+    lanes: L,
     law: P,
     blocks: &'a Blocks,
     position: &'a [Octet],
@@ -307,7 +309,6 @@ impl<P: Law, L: Lanes> View<'_, P, L> {
     #[inline(always)]
     fn add_segment<const ENERGY: bool, const SHIFT: u8>(
         &self,
-        lanes: L,
         of: &Four<L>,
         listed: &[u32],
         pairs: [L::M; VECTORS],
@@ -317,13 +318,13 @@ impl<P: Law, L: Lanes> View<'_, P, L> {
     ) -> Sums<L> {
         let mut listed = listed.iter();
         let Some(j) = self.next::<SHIFT>(&mut listed, apart) else { return sums };
-        let mut near = self.search::<SHIFT, true>(lanes, of, j, pairs);
+        let mut near = self.search::<SHIFT, true>(of, j, pairs);
         while let Some(j) = self.next::<SHIFT>(&mut listed, apart) {
-            let next = self.search::<SHIFT, false>(lanes, of, j, pairs);
-            sums = self.add::<ENERGY>(lanes, of.kinds, near, sums, to);
+            let next = self.search::<SHIFT, false>(of, j, pairs);
+            sums = self.add::<ENERGY>(of.kinds, near, sums, to);
             near = next;
         }
-        self.add::<ENERGY>(lanes, of.kinds, near, sums, to)
+        self.add::<ENERGY>(of.kinds, near, sums, to)
     }
 
     /// See [`View::add_segment`].
@@ -341,13 +342,8 @@ impl<P: Law, L: Lanes> View<'_, P, L> {
 
     /// The pairs of a cluster and block `j` that are within range, where `MASKED` only those of `pairs`.
     #[inline(always)]
-    fn search<const SHIFT: u8, const MASKED: bool>(
-        &self,
-        lanes: L,
-        of: &Four<L>,
-        j: usize,
-        pairs: [L::M; VECTORS],
-    ) -> Near<L> {
+    fn search<const SHIFT: u8, const MASKED: bool>(&self, of: &Four<L>, j: usize, pairs: [L::M; VECTORS]) -> Near<L> {
+        let lanes = self.lanes;
         let at = twice(lanes, &self.position[j]);
         let shifts = match SHIFT {
             HERE => [at; VECTORS],
@@ -377,12 +373,12 @@ impl<P: Law, L: Lanes> View<'_, P, L> {
     #[inline(always)]
     fn add<const ENERGY: bool>(
         &self,
-        lanes: L,
         kinds: [u32; CLUSTER],
         near: Near<L>,
         mut sums: Sums<L>,
         to: &mut Target,
     ) -> Sums<L> {
+        let lanes = self.lanes;
         let Near { j, mut d, r2, inside, y } = near;
         let kinds_j = if P::TYPED && !self.kind.is_empty() { &self.kind[j] } else { &[0; BLOCK] };
         let mut c = [[r2[0]; 4]; VECTORS];

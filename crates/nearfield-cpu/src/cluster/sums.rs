@@ -270,7 +270,7 @@ impl PageSums {
             let block = usize::from(!task.force.is_empty()) * size_of::<Octet>()
                 + usize::from(!task.energy.is_empty()) * size_of::<Octet>()
                 + usize::from(!task.exact.is_empty()) * size_of::<Exact>();
-            task.touched.len() * PAGE * block + task.seen.capacity()
+            task.touched.len() * PAGE * block + task.seen.capacity() + 4 * task.crossed.capacity()
         };
         self.tasks.iter().map(of_task).sum::<usize>() + 4 * self.touching.capacity()
     }
