@@ -3,7 +3,10 @@
 mod common;
 use common::*;
 use nearfield_core::Error;
-use nearfield_cuda::gpu::{Gpu, Memory, Queue};
+use nearfield_cuda::{
+    Sequence,
+    gpu::{Gpu, Memory, Queue},
+};
 use nearfield_emulator::Emulator;
 
 #[test]
@@ -73,4 +76,23 @@ fn who_reads_a_released_buffer_sees_a_pattern() {
     unsafe { gpu.release(input) };
     launch(&gpu, ("blocks", "wild"), (1, 32), &Blocks { input, output, ticket: 0, n: 0, unused: 0 }).unwrap();
     assert_eq!(content::<u32>(&gpu, output, 32), [0xA5A5_A5A5; 32]);
+}
+
+#[test]
+#[cfg_attr(not(host_compiler), ignore = "no C++ compiler")]
+fn a_sequence_does_nothing_until_it_is_run_and_then_all_its_parts_each_time() {
+    let gpu = emulator();
+    let address = buffer(&gpu, &[1u8; 4]);
+    let sequence = Sequence::default();
+    // SAFETY: all is within the buffer.
+    unsafe {
+        sequence.fill(address, 2, 3).unwrap();
+        sequence.fill(address, 3, 1).unwrap();
+        assert_eq!(content::<u8>(&gpu, address, 4), [1; 4]);
+        for _ in 0..2 {
+            gpu.run(&sequence).unwrap();
+            assert_eq!(content::<u8>(&gpu, address, 4), [3, 2, 2, 1]);
+            gpu.fill(address, 1, 4).unwrap();
+        }
+    }
 }

@@ -4,7 +4,7 @@ use super::{
     BLOCK, Output,
     blocks::Blocks,
     list::{PairList, Pairs},
-    quad::{CLUSTER, Quad, VECTORS, own_pairs, squared_length, twice},
+    quad::{self, CLUSTER, Quad, VECTORS, displacement, own_pairs, squared_length, twice},
     sums::{Exact, PageSums},
 };
 use crate::{
@@ -59,7 +59,8 @@ impl lanes::Kernel for Kernel<'_> {
         let range2 = lanes.splat(blocks.cutoff * blocks.cutoff);
         for segment in &list.segments {
             let cluster = segment.cluster as usize;
-            let quad = Quad::<L>::new(lanes, blocks, &blocks.position, cluster, segment.image);
+            let quad = Quad::new(lanes, blocks, cluster, segment.image);
+            let position = quad::position(lanes, &blocks.position, cluster);
             for (k, &j) in list.blocks[segment.start as usize..segment.end as usize].iter().enumerate() {
                 let j = j as usize;
                 let at = twice(lanes, &blocks.position[j]);
@@ -67,7 +68,7 @@ impl lanes::Kernel for Kernel<'_> {
                 let own = segment.own && k == 0;
                 let pairs = if own { own_pairs(cluster) } else { [u16::MAX; VECTORS] };
                 for v in 0..VECTORS {
-                    let r2 = squared_length(lanes, quad.displacement::<true>(lanes, v, at, &shifts));
+                    let r2 = squared_length(lanes, displacement::<L, true>(lanes, &position[v], at, &shifts[v]));
                     let mut inside = lanes.lt(r2, range2) & pairs[v];
                     while inside != 0 {
                         let lane = inside.trailing_zeros() as usize;

@@ -4,7 +4,7 @@ use super::{
     BLOCK,
     blocks::{Blocks, Octet},
     list::Pairs,
-    quad::{CLUSTER, Quad, VECTORS, own_pairs, squared_length, twice},
+    quad::{self, CLUSTER, Position, Quad, VECTORS, displacement, own_pairs, squared_length, twice},
 };
 use crate::{
     lanes::{self, Lanes},
@@ -77,7 +77,7 @@ impl Law for Plain {
             y2[k] = lanes.mul(y[k], y[k]);
         }
         for k in 0..K {
-            y3[k] = lanes.sub(lanes.mul(y2[k], y[k]), c[k][0]);
+            y3[k] = lanes.mul_sub(y2[k], y[k], c[k][0]);
         }
         for k in 0..K {
             y2[k] = lanes.mul(y2[k], y2[k]);
@@ -182,12 +182,6 @@ pub(super) struct Kernel<'a, P, const ENERGY: bool> {
     pub crossed: &'a mut Vec<u32>,
 }
 
-/// Sums of a cluster against the blocks of a segment.
-struct Sums<L: Lanes> {
-    force: [[L::F; 3]; VECTORS],
-    energy: [[L::F; 3]; VECTORS],
-}
-
 impl<P: Law, const ENERGY: bool> lanes::Kernel for Kernel<'_, P, ENERGY> {
     type Output = ();
 
@@ -204,46 +198,53 @@ impl<P: Law, const ENERGY: bool> lanes::Kernel for Kernel<'_, P, ENERGY> {
             kind: if P::TYPED && !blocks.kind.is_empty() { &blocks.kind[..n] } else { &[] },
             range2: lanes.splat(blocks.cutoff * blocks.cutoff),
         };
-        let (force, energy) = (&mut force[..n], if ENERGY { &mut energy[..n] } else { energy });
-        for segment in &list.segments {
-            let cluster = segment.cluster as usize;
+        let mut to = Target { force: &mut force[..n], energy: if ENERGY { &mut energy[..n] } else { energy } };
+        // As many as a segment may have. No calls below: all that is in registers would have to be saved.
+        crossed.resize(n, 0);
+        let all = [lanes.mask(u16::MAX); VECTORS];
+        for segments in list.segments.chunk_by(|a, b| a.cluster == b.cluster) {
+            let cluster = segments[0].cluster as usize;
             let (block, at) = (cluster / 2, cluster % 2 * CLUSTER);
             let kinds = if P::TYPED && !view.kind.is_empty() { view.kind[block] } else { [0; BLOCK] };
+            let kinds = [kinds[at], kinds[at + 1], kinds[at + 2], kinds[at + 3]];
+            // As if somebody else might change it, so that it is read from the cache: registers are for sums.
+            let position = quad::position(lanes, view.position, cluster);
+            let position = std::hint::black_box(&position);
             let zero = [[lanes.splat(0.0); 3]; VECTORS];
-            let mut sums = Sums::<L> { force: zero, energy: zero };
-            let mut target = Target {
-                quad: Quad::<L>::new(lanes, blocks, view.position, cluster, segment.image),
-                kinds: [kinds[at], kinds[at + 1], kinds[at + 2], kinds[at + 3]],
-                sums: &mut sums,
-                force: &mut *force,
-                energy: &mut *energy,
-            };
-            let listed = &list.blocks[segment.start as usize..segment.end as usize];
-            let all = lanes.mask(u16::MAX);
-            let [first, second] = if segment.own { own_pairs(cluster) } else { [u16::MAX; VECTORS] };
-            let mut pairs = [lanes.mask(first), lanes.mask(second), all, all];
-            let mut apart = listed;
-            if !view.crossed[block] {
-                crossed.clear();
-                if segment.image == [0; 3] {
-                    view.add_segment::<ENERGY, HERE>(lanes, listed, pairs, &mut target, crossed);
-                } else {
-                    view.add_segment::<ENERGY, IMAGE>(lanes, listed, pairs, &mut target, crossed);
+            let mut sums = Sums { force: zero, energy: zero };
+            for segment in segments {
+                let quad = Quad::new(lanes, blocks, cluster, segment.image);
+                let of = Four { position, quad, kinds };
+                let listed = &list.blocks[segment.start as usize..segment.end as usize];
+                let [first, second] = if segment.own { own_pairs(cluster) } else { [u16::MAX; VECTORS] };
+                let pairs = [lanes.mask(first), lanes.mask(second)];
+                let mut apart = Apart { blocks: &mut *crossed, n: 0 };
+                if view.crossed[block] {
+                    sums = view.add_segment::<ENERGY, CROSSED>(lanes, &of, listed, pairs, sums, &mut to, &mut apart);
+                    continue;
                 }
-                (apart, pairs) = (&*crossed, [all; 4]);
+                // Its own block has not crossed either, so `pairs` is for none of those put apart.
+                if segment.image == [0; 3] {
+                    sums = view.add_segment::<ENERGY, HERE>(lanes, &of, listed, pairs, sums, &mut to, &mut apart);
+                } else {
+                    sums = view.add_segment::<ENERGY, IMAGE>(lanes, &of, listed, pairs, sums, &mut to, &mut apart);
+                }
+                let Apart { blocks, n } = apart;
+                if n > 0 {
+                    let mut none = Apart { blocks: &mut [], n: 0 };
+                    sums = view.add_segment::<ENERGY, CROSSED>(lanes, &of, &blocks[..n], all, sums, &mut to, &mut none);
+                }
             }
-            for &j in apart {
-                view.add::<2, ENERGY, CROSSED, true>(lanes, [j as usize; 2], pairs, &mut target);
-                pairs = [all; 4];
-            }
-            for axis in 0..3 {
-                let of_four = lanes.sum_halves(sums.force[0][axis], sums.force[1][axis]);
-                for (to, sum) in force[block].0[axis][at..at + CLUSTER].iter_mut().zip(of_four) {
+            let force = lanes.sum_halves(sums.force[0], sums.force[1]);
+            for (to, of_four) in to.force[block].0.iter_mut().zip(&force) {
+                for (to, sum) in to[at..at + CLUSTER].iter_mut().zip(of_four) {
                     *to -= sum;
                 }
-                if ENERGY {
-                    let of_four = lanes.sum_halves(sums.energy[0][axis], sums.energy[1][axis]);
-                    for (to, sum) in energy[block].0[axis][at..at + CLUSTER].iter_mut().zip(of_four) {
+            }
+            if ENERGY {
+                let energy = lanes.sum_halves(sums.energy[0], sums.energy[1]);
+                for (to, of_four) in to.energy[block].0.iter_mut().zip(&energy) {
+                    for (to, sum) in to[at..at + CLUSTER].iter_mut().zip(of_four) {
                         *to += sum;
                     }
                 }
@@ -252,13 +253,40 @@ impl<P: Law, const ENERGY: bool> lanes::Kernel for Kernel<'_, P, ENERGY> {
     }
 }
 
-/// A cluster and what its pairs are added to.
-struct Target<'a, L: Lanes> {
+/// A cluster.
+struct Four<'a, L: Lanes> {
+    position: &'a Position<L>,
     quad: Quad<L>,
     kinds: [u32; CLUSTER],
-    sums: &'a mut Sums<L>,
+}
+
+/// Sums of a cluster's particles: handed on by value, to stay in registers.
+#[derive(Clone, Copy)]
+struct Sums<L: Lanes> {
+    force: [[L::F; 3]; VECTORS],
+    energy: [[L::F; 3]; VECTORS],
+}
+
+/// Blocks of a segment some of whose particles have crossed a face.
+struct Apart<'a> {
+    blocks: &'a mut [u32],
+    n: usize,
+}
+
+/// What is added to of the blocks that a cluster is paired with.
+struct Target<'a> {
     force: &'a mut [Octet],
     energy: &'a mut [Octet],
+}
+
+/// The pairs of a cluster and block `j`: displacements, their squared lengths, which count, and for those 1 / r².
+#[derive(Clone, Copy)]
+struct Near<L: Lanes> {
+    j: usize,
+    d: [[L::F; 3]; VECTORS],
+    r2: [L::F; VECTORS],
+    inside: [L::M; VECTORS],
+    y: [L::F; VECTORS],
 }
 
 /// What the kernel reads.
@@ -272,110 +300,118 @@ struct View<'a, P, L: Lanes> {
 }
 
 impl<P: Law, L: Lanes> View<'_, P, L> {
-    /// The pairs of a cluster and the blocks `listed`, of the first of which only those of `pairs` count. Blocks of
-    /// which some particle has crossed a face are put into `crossed`. The cluster's own has not.
+    /// The pairs of a cluster and the blocks `listed`, of the first of which only those of `pairs` count. Unless `SHIFT`
+    /// is for them, blocks of which some particle has crossed a face are put `apart`.
+    ///
+    /// One block is searched while forces are computed of the one before: neither has to wait for the other.
     #[inline(always)]
     fn add_segment<const ENERGY: bool, const SHIFT: u8>(
         &self,
         lanes: L,
+        of: &Four<L>,
         listed: &[u32],
-        pairs: [L::M; 4],
-        to: &mut Target<L>,
-        crossed: &mut Vec<u32>,
-    ) {
-        // One block or two, so that what is left is even.
-        let (first, others) = listed.split_at(2 - listed.len() % 2);
-        let [a, b] = [first[0] as usize, first[first.len() - 1] as usize];
-        if self.crossed[a] {
-            crossed.extend_from_slice(first);
-        } else if a == b || self.crossed[b] {
-            self.add::<2, ENERGY, SHIFT, true>(lanes, [a; 2], pairs, to);
-            crossed.extend_from_slice(&first[1..]);
-        } else {
-            self.add::<4, ENERGY, SHIFT, true>(lanes, [a, b], pairs, to);
+        pairs: [L::M; VECTORS],
+        mut sums: Sums<L>,
+        to: &mut Target,
+        apart: &mut Apart,
+    ) -> Sums<L> {
+        let mut listed = listed.iter();
+        let Some(j) = self.next::<SHIFT>(&mut listed, apart) else { return sums };
+        let mut near = self.search::<SHIFT, true>(lanes, of, j, pairs);
+        while let Some(j) = self.next::<SHIFT>(&mut listed, apart) {
+            let next = self.search::<SHIFT, false>(lanes, of, j, pairs);
+            sums = self.add::<ENERGY>(lanes, of.kinds, near, sums, to);
+            near = next;
         }
-        for two in others.as_chunks::<2>().0 {
-            let [a, b] = [two[0] as usize, two[1] as usize];
-            if self.crossed[a] | self.crossed[b] {
-                crossed.extend_from_slice(two);
-            } else {
-                self.add::<4, ENERGY, SHIFT, false>(lanes, [a, b], pairs, to);
+        self.add::<ENERGY>(lanes, of.kinds, near, sums, to)
+    }
+
+    /// See [`View::add_segment`].
+    #[inline(always)]
+    fn next<const SHIFT: u8>(&self, listed: &mut std::slice::Iter<u32>, apart: &mut Apart) -> Option<usize> {
+        loop {
+            let j = *listed.next()?;
+            if SHIFT == CROSSED || !self.crossed[j as usize] {
+                return Some(j as usize);
             }
+            apart.blocks[apart.n] = j;
+            apart.n += 1;
         }
     }
 
-    /// The pairs of a cluster and one block (`K` = 2 vectors) or two (`K` = 4): all lanes, or where `MASKED` those of
-    /// `pairs`.
+    /// The pairs of a cluster and block `j` that are within range, where `MASKED` only those of `pairs`.
     #[inline(always)]
-    fn add<const K: usize, const ENERGY: bool, const SHIFT: u8, const MASKED: bool>(
+    fn search<const SHIFT: u8, const MASKED: bool>(
         &self,
         lanes: L,
-        j: [usize; 2],
-        pairs: [L::M; 4],
-        to: &mut Target<L>,
-    ) {
-        let at = [twice(lanes, &self.position[j[0]]), twice(lanes, &self.position[j[1]])];
-        let zero = lanes.splat(0.0);
+        of: &Four<L>,
+        j: usize,
+        pairs: [L::M; VECTORS],
+    ) -> Near<L> {
+        let at = twice(lanes, &self.position[j]);
         let shifts = match SHIFT {
-            HERE => [[zero; 3]; VECTORS],
-            IMAGE => to.quad.shifts_of_image(),
-            _ => to.quad.shifts(lanes, self.blocks, j[0]),
+            HERE => [at; VECTORS],
+            IMAGE => of.quad.shifts_of_image(),
+            _ => of.quad.shifts(lanes, self.blocks, j),
         };
-        let mut d = [[zero; 3]; K];
-        let (mut r2, mut y, mut c) = ([zero; K], [zero; K], [[zero; 4]; K]);
-        let mut inside = [pairs[0]; K];
-        for k in 0..K {
-            let (v, at) = (k % VECTORS, at[k / VECTORS]);
-            d[k] = if SHIFT == HERE {
-                to.quad.displacement::<false>(lanes, v, at, &shifts)
+        let mut near = Near { j, d: [at; VECTORS], r2: [at[0]; VECTORS], inside: pairs, y: [at[0]; VECTORS] };
+        for v in 0..VECTORS {
+            near.d[v] = if SHIFT == HERE {
+                displacement::<L, false>(lanes, &of.position[v], at, &shifts[v])
             } else {
-                to.quad.displacement::<true>(lanes, v, at, &shifts)
+                displacement::<L, true>(lanes, &of.position[v], at, &shifts[v])
             };
         }
-        for k in 0..K {
-            r2[k] = squared_length(lanes, d[k]);
+        for v in 0..VECTORS {
+            near.r2[v] = squared_length(lanes, near.d[v]);
         }
-        for k in 0..K {
-            let near = lanes.less(r2[k], self.range2);
-            inside[k] = if MASKED { lanes.and(near, pairs[k]) } else { near };
-            y[k] = lanes.reciprocal(inside[k], r2[k]);
+        for v in 0..VECTORS {
+            let inside = lanes.less(near.r2[v], self.range2);
+            near.inside[v] = if MASKED { lanes.and(inside, pairs[v]) } else { inside };
+            near.y[v] = lanes.reciprocal(near.inside[v], near.r2[v]);
         }
-        for k in 0..K {
-            let kinds_i = [to.kinds[k % VECTORS * 2], to.kinds[k % VECTORS * 2 + 1]];
-            let kinds_j = if P::TYPED && !self.kind.is_empty() { &self.kind[j[k / VECTORS]] } else { &[0; BLOCK] };
-            c[k] = self.law.coefficients(lanes, kinds_i, kinds_j);
+        near
+    }
+
+    /// Adds up what pairs do.
+    #[inline(always)]
+    fn add<const ENERGY: bool>(
+        &self,
+        lanes: L,
+        kinds: [u32; CLUSTER],
+        near: Near<L>,
+        mut sums: Sums<L>,
+        to: &mut Target,
+    ) -> Sums<L> {
+        let Near { j, mut d, r2, inside, y } = near;
+        let kinds_j = if P::TYPED && !self.kind.is_empty() { &self.kind[j] } else { &[0; BLOCK] };
+        let mut c = [[r2[0]; 4]; VECTORS];
+        for v in 0..VECTORS {
+            c[v] = self.law.coefficients(lanes, [kinds[2 * v], kinds[2 * v + 1]], kinds_j);
         }
         let mut f = self.law.f_over_r(lanes, &y, &c);
-        for k in 0..K {
+        for v in 0..VECTORS {
             // What adds up powers of y is zero outside; others must be made so.
-            f[k] = if P::TYPED { lanes.keep(inside[k], f[k]) } else { f[k] };
+            f[v] = if P::TYPED { lanes.keep(inside[v], f[v]) } else { f[v] };
             for axis in 0..3 {
-                d[k][axis] = lanes.mul(f[k], d[k][axis]);
+                d[v][axis] = lanes.mul(f[v], d[v][axis]);
+                sums.force[v][axis] = lanes.add(sums.force[v][axis], d[v][axis]);
             }
         }
-        for b in 0..K / VECTORS {
-            for axis in 0..3 {
-                let both = lanes.add(d[VECTORS * b][axis], d[VECTORS * b + 1][axis]);
-                lanes.add_halves(both, &mut to.force[j[b]].0[axis]);
-            }
-        }
-        for k in 0..K {
-            for axis in 0..3 {
-                let sum = &mut to.sums.force[k % VECTORS][axis];
-                *sum = lanes.add(*sum, d[k][axis]);
-            }
+        for axis in 0..3 {
+            lanes.add_halves(lanes.add(d[0][axis], d[1][axis]), &mut to.force[j].0[axis]);
         }
         if ENERGY {
-            for k in 0..K {
-                let u = self.law.energy(lanes, y[k], r2[k], &c[k]);
-                let terms = [u, lanes.mul(f[k], r2[k]), lanes.splat(1.0)];
+            for v in 0..VECTORS {
+                let u = self.law.energy(lanes, y[v], r2[v], &c[v]);
+                let terms = [u, lanes.mul(f[v], r2[v]), lanes.splat(1.0)];
                 for (of, term) in terms.into_iter().enumerate() {
-                    let term = lanes.keep(inside[k], term);
-                    let sum = &mut to.sums.energy[k % VECTORS][of];
-                    *sum = lanes.add(*sum, term);
-                    lanes.add_halves(term, &mut to.energy[j[k / VECTORS]].0[of]);
+                    let term = lanes.keep(inside[v], term);
+                    sums.energy[v][of] = lanes.add(sums.energy[v][of], term);
+                    lanes.add_halves(term, &mut to.energy[j].0[of]);
                 }
             }
         }
+        sums
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{
     blocks::{Blocks, Octet, PAGE},
-    quad::{self, Quad, VECTORS, own_pairs, squared_length, twice},
+    quad::{self, Position, Quad, VECTORS, displacement, own_pairs, squared_length, twice},
 };
 use crate::{
     Grid, GroupBox, Run,
@@ -36,7 +36,7 @@ pub(super) struct Segment {
     pub end: u32,
 }
 
-/// A list of cluster pairs.
+/// A list of cluster pairs. Segments of a cluster follow each other.
 #[derive(Debug, Default)]
 pub(super) struct Pairs {
     pub segments: Vec<Segment>,
@@ -65,6 +65,13 @@ impl Pairs {
         }
     }
 
+    /// Puts the segments of `other` after its own.
+    fn append(&mut self, other: &Self) {
+        let n = self.blocks.len() as u32;
+        self.blocks.extend_from_slice(&other.blocks);
+        self.segments.extend(other.segments.iter().map(|s| Segment { start: s.start + n, end: s.end + n, ..*s }));
+    }
+
     fn bytes(&self) -> usize {
         self.segments.capacity() * size_of::<Segment>() + 4 * self.blocks.capacity()
     }
@@ -90,8 +97,8 @@ pub(super) struct Task {
     /// What may be within the cutoff before the next pruning.
     pub inner: Pairs,
     runs: Vec<Run>,
-    /// Blocks near the second cluster of the block at hand.
-    second: Vec<u32>,
+    /// What is near the second cluster of the block at hand.
+    second: Pairs,
 }
 
 /// The list of all pairs, by task.
@@ -149,7 +156,7 @@ impl PairList {
     }
 
     pub fn bytes(&self) -> usize {
-        self.tasks.iter().map(|t| t.outer.bytes() + t.inner.bytes() + 4 * t.second.capacity()).sum()
+        self.tasks.iter().map(|t| t.outer.bytes() + t.inner.bytes() + t.second.bytes()).sum()
     }
 }
 
@@ -211,31 +218,32 @@ impl lanes::Kernel for Build<'_> {
         while b < clusters_of.end && outer.blocks.len() < enough {
             // Blocks are near by where they are expected, rows by where they are.
             let group = bounds(blocks, b, reach + blocks.lead);
+            let positions =
+                [quad::position(lanes, &blocks.midway, 2 * b), quad::position(lanes, &blocks.midway, 2 * b + 1)];
             runs.clear();
+            second.clear();
             grid.find_rows(&group, blocks.first[b], runs);
             for runs in runs.chunk_by(|a, b| a.image == b.image) {
                 let image = runs[0].image;
                 let quads = [
-                    Quad::<L>::new(lanes, blocks, &blocks.midway, 2 * b, image),
-                    Quad::<L>::new(lanes, blocks, &blocks.midway, 2 * b + 1, image),
+                    (Quad::new(lanes, blocks, 2 * b, image), positions[0]),
+                    (Quad::new(lanes, blocks, 2 * b + 1, image), positions[1]),
                 ];
-                let start = outer.blocks.len();
-                second.clear();
+                let starts = [outer.blocks.len(), second.blocks.len()];
                 for run in runs {
                     let first = blocks.block_of[run.start as usize].max(b as u32);
                     let last = blocks.block_of[run.end as usize - 1];
-                    let near = [&mut outer.blocks, &mut *second];
+                    let near = [&mut outer.blocks, &mut second.blocks];
                     if image == [0; 3] {
                         find_near::<L, false>(lanes, blocks, &quads, reach2, b as u32, first..last + 1, near);
                     } else {
                         find_near::<L, true>(lanes, blocks, &quads, reach2, b as u32, first..last + 1, near);
                     }
                 }
-                let middle = outer.blocks.len();
-                outer.blocks.extend_from_slice(second);
-                outer.close(2 * b as u32, image, start, middle);
-                outer.close(2 * b as u32 + 1, image, middle, outer.blocks.len());
+                outer.close(2 * b as u32, image, starts[0], outer.blocks.len());
+                second.close(2 * b as u32 + 1, image, starts[1], second.blocks.len());
             }
+            outer.append(second);
             b += 1;
         }
         b
@@ -248,7 +256,7 @@ impl lanes::Kernel for Build<'_> {
 fn find_near<L: Lanes, const IMAGES: bool>(
     lanes: L,
     blocks: &Blocks,
-    quads: &[Quad<L>; 2],
+    quads: &[(Quad<L>, Position<L>); 2],
     reach2: L::F,
     b: u32,
     run: Range<u32>,
@@ -278,15 +286,15 @@ fn any_within<L: Lanes, const IMAGES: bool>(
     lanes: L,
     blocks: &Blocks,
     position: &[Octet],
-    quad: &Quad<L>,
+    (quad, own): &(Quad<L>, Position<L>),
     j: usize,
     reach2: [L::F; VECTORS],
     pairs: [u16; VECTORS],
 ) -> bool {
     let at = twice(lanes, &position[j]);
     let shifts = if IMAGES { quad.shifts(lanes, blocks, j) } else { [at; VECTORS] };
-    let first = squared_length(lanes, quad.displacement::<IMAGES>(lanes, 0, at, &shifts));
-    let second = squared_length(lanes, quad.displacement::<IMAGES>(lanes, 1, at, &shifts));
+    let first = squared_length(lanes, displacement::<L, IMAGES>(lanes, &own[0], at, &shifts[0]));
+    let second = squared_length(lanes, displacement::<L, IMAGES>(lanes, &own[1], at, &shifts[1]));
     (lanes.lt(first, reach2[0]) & pairs[0]) | (lanes.lt(second, reach2[1]) & pairs[1]) != 0
 }
 
@@ -323,7 +331,7 @@ impl lanes::Kernel for Prune<'_> {
         for segment in &outer.segments {
             let cluster = segment.cluster as usize;
             let (block, at) = (cluster / 2, cluster % 2 * quad::CLUSTER);
-            let quad = Quad::<L>::new(lanes, blocks, midway, cluster, segment.image);
+            let quad = (Quad::new(lanes, blocks, cluster, segment.image), quad::position(lanes, midway, cluster));
             let budget = &blocks.budget[block];
             let range = |lane: usize| conservative_range(blocks.cutoff + budget[at + lane], blocks.extent);
             let ranges = [lanes.halves(range(0), range(1)), lanes.halves(range(2), range(3))];

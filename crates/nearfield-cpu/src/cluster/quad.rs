@@ -23,10 +23,12 @@ const LATER: [[u16; VECTORS]; 2] = {
     masks
 };
 
-/// A cluster in vectors.
+/// Where the particles of a cluster are.
+pub(super) type Position<L> = [[<L as Lanes>::F; 3]; VECTORS];
+
+/// A cluster to be paired with blocks seen in an image.
 #[derive(Clone, Copy)]
 pub(super) struct Quad<L: Lanes> {
-    position: [[L::F; 3]; VECTORS],
     block: usize,
     at: usize,
     image: [L::F; 3],
@@ -36,15 +38,13 @@ pub(super) struct Quad<L: Lanes> {
 }
 
 impl<L: Lanes> Quad<L> {
-    /// Cluster `cluster`, of blocks at `position`, to be paired with blocks seen in `image`.
+    /// Cluster `cluster`, to be paired with blocks seen in `image`.
     #[inline(always)]
-    pub fn new(lanes: L, blocks: &Blocks, position: &[Octet], cluster: usize, image: [i8; 3]) -> Self {
+    pub fn new(lanes: L, blocks: &Blocks, cluster: usize, image: [i8; 3]) -> Self {
         let (block, at) = (cluster / 2, cluster % 2 * CLUSTER);
-        let position = &position[block];
         let [x, y, z] = image.map(f32::from);
         let [px, py, pz] = blocks.period;
         Self {
-            position: [halves(lanes, position, at), halves(lanes, position, at + 2)],
             block,
             at,
             image: [lanes.splat(x), lanes.splat(y), lanes.splat(z)],
@@ -61,10 +61,10 @@ impl<L: Lanes> Quad<L> {
         }
         let theirs = twice(lanes, &blocks.crossings[j]);
         let mut shifts = self.shifts_of_image();
+        let own = quarters(lanes, &blocks.crossings[self.block], self.at);
         for v in 0..VECTORS {
-            let own = halves(lanes, &blocks.crossings[self.block], self.at + 2 * v);
             for axis in 0..3 {
-                let image = lanes.sub(lanes.add(self.image[axis], theirs[axis]), own[axis]);
+                let image = lanes.sub(lanes.add(self.image[axis], theirs[axis]), own[v][axis]);
                 shifts[v][axis] = lanes.mul(image, lanes.splat(blocks.period[axis]));
             }
         }
@@ -76,40 +76,52 @@ impl<L: Lanes> Quad<L> {
     pub fn shifts_of_image(&self) -> [[L::F; 3]; VECTORS] {
         [self.shift; VECTORS]
     }
+}
 
-    /// `(x_j - x_i) + shift` of vector `v`. Without `SHIFTED` there is no shift.
-    #[inline(always)]
-    pub fn displacement<const SHIFTED: bool>(
-        &self,
-        lanes: L,
-        v: usize,
-        j: [L::F; 3],
-        shifts: &[[L::F; 3]; VECTORS],
-    ) -> [L::F; 3] {
-        let mut d = j;
-        for axis in 0..3 {
-            d[axis] = lanes.sub(j[axis], self.position[v][axis]);
-            if SHIFTED {
-                d[axis] = lanes.add(d[axis], shifts[v][axis]);
-            }
-        }
-        d
-    }
+/// Where the particles of cluster `cluster` are, of blocks at `position`.
+#[inline(always)]
+pub(super) fn position<L: Lanes>(lanes: L, position: &[Octet], cluster: usize) -> Position<L> {
+    quarters(lanes, &position[cluster / 2], cluster % 2 * CLUSTER)
 }
 
 // No closures below or in kernels: they would be compiled without the instruction set.
 
-/// Element `at` of each array in lanes 0 to 7, the one after it in lanes 8 to 15.
+/// Elements `at` of each array in lanes 0 to 7 and the next in lanes 8 to 15, then the same of the two after them.
 #[inline(always)]
-fn halves<L: Lanes>(lanes: L, octet: &Octet, at: usize) -> [L::F; 3] {
-    let [x, y, z] = &octet.0;
-    [lanes.halves(x[at], x[at + 1]), lanes.halves(y[at], y[at + 1]), lanes.halves(z[at], z[at + 1])]
+fn quarters<L: Lanes>(lanes: L, octet: &Octet, at: usize) -> Position<L> {
+    let [x, y, z] = [four(&octet.0[0], at), four(&octet.0[1], at), four(&octet.0[2], at)];
+    let ([x0, x1], [y0, y1], [z0, z1]) = (lanes.quarters(x), lanes.quarters(y), lanes.quarters(z));
+    [[x0, y0, z0], [x1, y1, z1]]
+}
+
+/// The first or the second half.
+#[inline(always)]
+fn four(of: &[f32; BLOCK], at: usize) -> &[f32; CLUSTER] {
+    &of.as_chunks().0[at / CLUSTER]
 }
 
 /// An array of eight vectors, twice in each vector.
 #[inline(always)]
 pub(super) fn twice<L: Lanes>(lanes: L, octet: &Octet) -> [L::F; 3] {
     [lanes.twice(&octet.0[0]), lanes.twice(&octet.0[1]), lanes.twice(&octet.0[2])]
+}
+
+/// `(x_j - x_i) + shift`. Without `SHIFTED` there is no shift.
+#[inline(always)]
+pub(super) fn displacement<L: Lanes, const SHIFTED: bool>(
+    lanes: L,
+    i: &[L::F; 3],
+    j: [L::F; 3],
+    shift: &[L::F; 3],
+) -> [L::F; 3] {
+    let mut d = j;
+    for axis in 0..3 {
+        d[axis] = lanes.sub(j[axis], i[axis]);
+        if SHIFTED {
+            d[axis] = lanes.add(d[axis], shift[axis]);
+        }
+    }
+    d
 }
 
 /// The squared length as the predicate defines it.

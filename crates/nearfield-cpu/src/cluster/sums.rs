@@ -175,21 +175,21 @@ impl PageSums {
     /// The force on block `b` from the `tasks` that touch it.
     #[inline(always)]
     fn force(&self, tasks: &[u32], b: usize, scale: f32) -> Octet {
-        let mut force = Octet::default();
+        let [mut x, mut y, mut z] = [[0.0; BLOCK]; 3];
         for &t in tasks {
-            let terms = &self.tasks[t as usize].force[b];
-            for axis in 0..3 {
-                for lane in 0..BLOCK {
-                    force.0[axis][lane] += terms.0[axis][lane];
-                }
-            }
-        }
-        for axis in 0..3 {
+            let terms = &self.tasks[t as usize].force[b].0;
             for lane in 0..BLOCK {
-                force.0[axis][lane] *= scale;
+                x[lane] += terms[0][lane];
+                y[lane] += terms[1][lane];
+                z[lane] += terms[2][lane];
             }
         }
-        force
+        for lane in 0..BLOCK {
+            x[lane] *= scale;
+            y[lane] *= scale;
+            z[lane] *= scale;
+        }
+        Octet([x, y, z])
     }
 
     /// The tasks that touch page `p`.

@@ -252,22 +252,61 @@ impl Mover for Verlet<'_> {
             && let (Some(vx), Some(vy), Some(vz)) = (vx.first_chunk_mut(), vy.first_chunk_mut(), vz.first_chunk_mut())
         {
             let mut next = (*position, [*vx, *vy, *vz]);
-            let mut inside = true;
-            for (axis, force) in force.iter().enumerate() {
-                inside &= self.integrator.step_many(axis, &mut next.0[axis], &mut next.1[axis], force, kind);
-            }
-            if inside {
+            if self.step(&mut next, force, kind) {
                 *position = next.0;
                 ([*x, *y, *z], [*vx, *vy, *vz]) = next;
                 return;
             }
+        } else if self.advance_some([x, y, z], [vx, vy, vz], force, kind, position) {
+            return;
         }
         self.advance_each(particles, force, position);
     }
 }
 
+/// Positions and velocities of eight particles.
+type Eight = ([[f32; BLOCK]; 3], [[f32; BLOCK]; 3]);
+
 impl Verlet<'_> {
-    /// The particles of a block that is not full, or of which some leave the box or are not finite.
+    /// Whether all of a block are in the box after they have moved.
+    #[inline(always)]
+    fn step(&self, (position, velocity): &mut Eight, force: &[[f32; BLOCK]; 3], kind: &[u32]) -> bool {
+        let mut inside = true;
+        for (axis, force) in force.iter().enumerate() {
+            inside &= self.integrator.step_many(axis, &mut position[axis], &mut velocity[axis], force, kind);
+        }
+        inside
+    }
+
+    /// The particles of a block that is not full. False, and none has moved, when some would leave the box.
+    #[cold]
+    fn advance_some(
+        &self,
+        x: [&mut [f32]; 3],
+        v: [&mut [f32]; 3],
+        force: &[[f32; BLOCK]; 3],
+        kind: &[u32],
+        position: &mut [[f32; BLOCK]; 3],
+    ) -> bool {
+        let n = x[0].len();
+        let mut next = (*position, [[0.0; BLOCK]; 3]);
+        for axis in 0..3 {
+            // Padding does not leave the box where the first particle does not.
+            next.0[axis][n..].fill(position[axis][0]);
+            next.1[axis][..n].copy_from_slice(v[axis]);
+        }
+        let inside = self.step(&mut next, force, kind);
+        if inside {
+            for (axis, (x, v)) in x.into_iter().zip(v).enumerate() {
+                x.copy_from_slice(&next.0[axis][..n]);
+                v.copy_from_slice(&next.1[axis][..n]);
+                position[axis][..n].copy_from_slice(x);
+            }
+        }
+        inside
+    }
+
+    /// The particles of a block of which some leave the box or are not finite.
     #[cold]
     fn advance_each(&self, particles: Range<usize>, force: &[[f32; BLOCK]; 3], position: &mut [[f32; BLOCK]; 3]) {
         for (lane, i) in particles.enumerate() {

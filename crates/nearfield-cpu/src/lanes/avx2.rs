@@ -52,6 +52,13 @@ fn compress_halves(v3: V3, mask: u16, value: [__m256i; 2]) -> ([u32; 8], usize, 
     (front(low, value[0]), low.count_ones() as usize, front(high, value[1]))
 }
 
+/// In each half, the sums of two pairs of `a` and of two of `b`.
+#[inline(always)]
+fn sum_pairs(v3: V3, a: __m256, b: __m256) -> __m256 {
+    let v = v3.avx;
+    v._mm256_add_ps(v._mm256_shuffle_ps::<0b10_00_10_00>(a, b), v._mm256_shuffle_ps::<0b11_01_11_01>(a, b))
+}
+
 impl Lanes for V3 {
     type F = [__m256; 2];
     type U = [__m256i; 2];
@@ -85,6 +92,11 @@ impl Lanes for V3 {
     #[inline(always)]
     fn mul_add(self, a: [__m256; 2], b: [__m256; 2], c: [__m256; 2]) -> [__m256; 2] {
         [self.fma._mm256_fmadd_ps(a[0], b[0], c[0]), self.fma._mm256_fmadd_ps(a[1], b[1], c[1])]
+    }
+
+    #[inline(always)]
+    fn mul_sub(self, a: [__m256; 2], b: [__m256; 2], c: [__m256; 2]) -> [__m256; 2] {
+        [self.fma._mm256_fmsub_ps(a[0], b[0], c[0]), self.fma._mm256_fmsub_ps(a[1], b[1], c[1])]
     }
 
     #[inline(always)]
@@ -191,27 +203,26 @@ impl Lanes for V3 {
     }
 
     #[inline(always)]
+    fn quarters(self, four: &[f32; 4]) -> [[__m256; 2]; 2] {
+        [self.halves(four[0], four[1]), self.halves(four[2], four[3])]
+    }
+
+    #[inline(always)]
     fn add_halves(self, a: [__m256; 2], to: &mut [f32; 8]) {
         *to = cast(self.avx._mm256_add_ps(cast(*to), self.avx._mm256_add_ps(a[0], a[1])));
     }
 
     #[inline(always)]
-    fn sum_halves(self, a: [__m256; 2], b: [__m256; 2]) -> [f32; 4] {
-        let v = self.avx;
-        let low = v._mm256_add_ps(
-            v._mm256_shuffle_ps::<0b01_00_01_00>(a[0], b[0]),
-            v._mm256_shuffle_ps::<0b11_10_11_10>(a[0], b[0]),
-        );
-        let high = v._mm256_add_ps(
-            v._mm256_shuffle_ps::<0b01_00_01_00>(a[1], b[1]),
-            v._mm256_shuffle_ps::<0b11_10_11_10>(a[1], b[1]),
-        );
-        let low = v._mm256_add_ps(low, v._mm256_permute_ps::<0b10_11_00_01>(low));
-        let high = v._mm256_add_ps(high, v._mm256_permute_ps::<0b10_11_00_01>(high));
-        let halves =
-            v._mm256_add_ps(v._mm256_permute2f128_ps::<0x20>(low, high), v._mm256_permute2f128_ps::<0x31>(low, high));
-        let halves: [f32; 8] = cast(halves);
-        [halves[0], halves[4], halves[2], halves[6]]
+    fn sum_halves(self, a: [[__m256; 2]; 3], b: [[__m256; 2]; 3]) -> [[f32; 4]; 3] {
+        let mut sums = [[0.0; 4]; 3];
+        for axis in 0..3 {
+            // In each half, the sums of two pairs of each; then half of each.
+            let (a, b) = (sum_pairs(self, a[axis][0], a[axis][1]), sum_pairs(self, b[axis][0], b[axis][1]));
+            let four = sum_pairs(self, a, b);
+            let low = self.avx._mm256_castps256_ps128(four);
+            sums[axis] = cast(self.sse._mm_add_ps(low, self.avx._mm256_extractf128_ps::<1>(four)));
+        }
+        sums
     }
 
     #[inline(always)]

@@ -20,6 +20,13 @@ impl<K: Kernel> NullaryFnOnce for OnAvx512<K> {
     }
 }
 
+/// In each quarter, the sums of two pairs of `a` and of two of `b`.
+#[inline(always)]
+fn sum_pairs(v4: V4, a: __m512, b: __m512) -> __m512 {
+    let f = v4.avx512f;
+    f._mm512_add_ps(f._mm512_shuffle_ps::<0b10_00_10_00>(a, b), f._mm512_shuffle_ps::<0b11_01_11_01>(a, b))
+}
+
 impl Lanes for V4 {
     type F = __m512;
     type U = __m512i;
@@ -53,6 +60,11 @@ impl Lanes for V4 {
     #[inline(always)]
     fn mul_add(self, a: __m512, b: __m512, c: __m512) -> __m512 {
         self.avx512f._mm512_fmadd_ps(a, b, c)
+    }
+
+    #[inline(always)]
+    fn mul_sub(self, a: __m512, b: __m512, c: __m512) -> __m512 {
+        self.avx512f._mm512_fmsub_ps(a, b, c)
     }
 
     #[inline(always)]
@@ -146,6 +158,14 @@ impl Lanes for V4 {
     }
 
     #[inline(always)]
+    fn quarters(self, four: &[f32; 4]) -> [__m512; 2] {
+        let four = self.avx512f._mm512_castps128_ps512(cast(*four));
+        let first = cast([0u32, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1]);
+        let second = cast([2u32, 2, 2, 2, 2, 2, 2, 2, 3, 3, 3, 3, 3, 3, 3, 3]);
+        [self.avx512f._mm512_permutexvar_ps(first, four), self.avx512f._mm512_permutexvar_ps(second, four)]
+    }
+
+    #[inline(always)]
     fn add_halves(self, a: __m512, to: &mut [f32; 8]) {
         let low = self.avx512f._mm512_castps512_ps256(a);
         let high: __m256 = cast(self.avx512f._mm512_extractf64x4_pd::<1>(cast(a)));
@@ -153,15 +173,19 @@ impl Lanes for V4 {
     }
 
     #[inline(always)]
-    fn sum_halves(self, a: __m512, b: __m512) -> [f32; 4] {
+    fn sum_halves(self, a: [__m512; 3], b: [__m512; 3]) -> [[f32; 4]; 3] {
         let f = self.avx512f;
-        // In each quarter: pairs of a, pairs of b; then their sums, each twice.
-        let pairs =
-            f._mm512_add_ps(f._mm512_shuffle_ps::<0b01_00_01_00>(a, b), f._mm512_shuffle_ps::<0b11_10_11_10>(a, b));
-        let quarters = f._mm512_add_ps(pairs, f._mm512_permute_ps::<0b10_11_00_01>(pairs));
-        let halves = f._mm512_add_ps(quarters, f._mm512_shuffle_f32x4::<0b10_11_00_01>(quarters, quarters));
-        let first = cast([0u32, 8, 2, 10, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
-        cast(f._mm512_castps512_ps128(f._mm512_permutexvar_ps(first, halves)))
+        // In each quarter: two sums of a, two of b; then x of a, x of b, y of a, y of b, and twice z of a, z of b.
+        let [x, y, z] = [sum_pairs(self, a[0], b[0]), sum_pairs(self, a[1], b[1]), sum_pairs(self, a[2], b[2])];
+        let (xy, zz) = (sum_pairs(self, x, y), sum_pairs(self, z, z));
+        // Quarters: x and y of lanes 0 to 7, of lanes 8 to 15, z of lanes 0 to 7, of lanes 8 to 15.
+        let all = f._mm512_add_ps(
+            f._mm512_shuffle_f32x4::<0b10_00_10_00>(xy, zz),
+            f._mm512_shuffle_f32x4::<0b11_01_11_01>(xy, zz),
+        );
+        let order = cast([0u32, 4, 1, 5, 2, 6, 3, 7, 8, 12, 9, 13, 0, 0, 0, 0]);
+        let sums: [[f32; 4]; 4] = cast(f._mm512_permutexvar_ps(order, all));
+        [sums[0], sums[1], sums[2]]
     }
 
     #[inline(always)]

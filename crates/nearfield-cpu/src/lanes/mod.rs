@@ -28,6 +28,7 @@ pub(crate) trait Lanes: Copy {
     fn sub(self, a: Self::F, b: Self::F) -> Self::F;
     fn mul(self, a: Self::F, b: Self::F) -> Self::F;
     fn mul_add(self, a: Self::F, b: Self::F, c: Self::F) -> Self::F;
+    fn mul_sub(self, a: Self::F, b: Self::F, c: Self::F) -> Self::F;
     /// The larger; unspecified where one is NaN.
     fn max(self, a: Self::F, b: Self::F) -> Self::F;
     /// a < b; false where one is NaN.
@@ -61,10 +62,12 @@ pub(crate) trait Lanes: Copy {
     fn twice(self, half: &[f32; 8]) -> Self::F;
     /// One value in lanes 0 to 7, another in lanes 8 to 15.
     fn halves(self, low: f32, high: f32) -> Self::F;
+    /// Each of four values in eight lanes.
+    fn quarters(self, four: &[f32; 4]) -> [Self::F; 2];
     /// Adds lanes 0 to 7 and lanes 8 to 15 to eight values.
     fn add_halves(self, a: Self::F, to: &mut [f32; 8]);
-    /// Sums of lanes 0 to 7 and of lanes 8 to 15, of `a` and then of `b`.
-    fn sum_halves(self, a: Self::F, b: Self::F) -> [f32; 4];
+    /// Sums of lanes 0 to 7 and of lanes 8 to 15, of `a` and then of `b`, for each axis.
+    fn sum_halves(self, a: [Self::F; 3], b: [Self::F; 3]) -> [[f32; 4]; 3];
     /// `low[index]` in lanes 0 to 7, `high[index]` in lanes 8 to 15. Indices are below 8.
     fn look_up(self, low: &[f32; 8], high: &[f32; 8], index: &[u32; 8]) -> Self::F;
 }

@@ -59,6 +59,11 @@ impl Lanes for Portable {
     }
 
     #[inline(always)]
+    fn mul_sub(self, a: [f32; 16], b: [f32; 16], c: [f32; 16]) -> [f32; 16] {
+        from_fn(|k| a[k].mul_add(b[k], -c[k]))
+    }
+
+    #[inline(always)]
     fn max(self, a: [f32; 16], b: [f32; 16]) -> [f32; 16] {
         from_fn(|k| a[k].max(b[k]))
     }
@@ -144,18 +149,23 @@ impl Lanes for Portable {
     }
 
     #[inline(always)]
+    fn quarters(self, four: &[f32; 4]) -> [[f32; 16]; 2] {
+        [self.halves(four[0], four[1]), self.halves(four[2], four[3])]
+    }
+
+    #[inline(always)]
     fn add_halves(self, a: [f32; 16], to: &mut [f32; 8]) {
         *to = from_fn(|k| to[k] + (a[k] + a[k + 8]));
     }
 
     #[inline(always)]
-    fn sum_halves(self, a: [f32; 16], b: [f32; 16]) -> [f32; 4] {
+    fn sum_halves(self, a: [[f32; 16]; 3], b: [[f32; 16]; 3]) -> [[f32; 4]; 3] {
         // In the order of the vector units, so that sums are the same.
         let sum = |a: &[f32; 16], o: usize| {
-            let quarter = |o: usize| (a[o] + a[o + 2]) + (a[o + 1] + a[o + 3]);
+            let quarter = |o: usize| (a[o] + a[o + 1]) + (a[o + 2] + a[o + 3]);
             quarter(o) + quarter(o + 4)
         };
-        [sum(&a, 0), sum(&a, 8), sum(&b, 0), sum(&b, 8)]
+        from_fn(|k| [sum(&a[k], 0), sum(&a[k], 8), sum(&b[k], 0), sum(&b[k], 8)])
     }
 
     #[inline(always)]

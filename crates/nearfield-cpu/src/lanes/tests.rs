@@ -18,12 +18,18 @@ impl Kernel for Everything<'_> {
         let masks = vec![l.lt(a, b), l.ne_u(u, v), l.gt_u(u, v), l.ne_u(u, l.splat_u(3))];
         let mut bits = Vec::new();
         let mut out = [0.0; 16];
-        for value in [l.add(a, b), l.sub(a, b), l.mul(a, b), l.mul_add(a, b, c)] {
+        for value in [l.add(a, b), l.sub(a, b), l.mul(a, b), l.mul_add(a, b, c), l.mul_sub(a, b, c)] {
             l.compress(u16::MAX, value, &mut out);
             bits.extend(out.iter().map(|x| if x.is_nan() { 1 } else { x.to_bits() }));
         }
         l.compress(u16::MAX, l.max(b, c), &mut out);
         bits.extend(out.map(f32::to_bits));
+        for value in l.quarters(&[self.b[0], self.b[1], self.b[2], self.b[3]]) {
+            l.compress(u16::MAX, value, &mut out);
+            bits.extend(out.map(f32::to_bits));
+        }
+        let sums = l.sum_halves([b, c, l.mul(b, b)], [l.sub(b, c), b, l.load(&out)]);
+        bits.extend(sums.as_flattened().iter().map(|x| x.to_bits()));
         let mut out_u = [0; 16];
         l.compress_u(u16::MAX, v, &mut out_u);
         bits.extend(out_u);

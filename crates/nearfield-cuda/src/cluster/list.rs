@@ -192,7 +192,10 @@ impl ClusterList {
     fn make_room(&mut self, state: &State, chunks: u64) -> Result<()> {
         self.entry.resize((chunks * CHUNK) as usize)?;
         self.segment.resize(state.len().div_ceil(CLUSTER) + chunks as usize / SEGMENT)?;
-        self.control.resize(1)
+        if self.control.is_empty() {
+            self.control.upload(&[ClusterControl::zeroed()])?;
+        }
+        Ok(())
     }
 
     /// Enqueues the listing of what is near each cluster of particles, which were just put in the order of `grid`, that was

@@ -163,3 +163,49 @@ unsafe fn add(
     // SAFETY: the call that succeeded has written it.
     Ok(unsafe { node.assume_init() })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::Queue;
+
+    fn fill(value: u8) -> Sequence {
+        let sequence = Sequence::default();
+        // SAFETY: it is never enqueued.
+        unsafe { sequence.fill(256, value, 8) }.expect("a sequence takes all work");
+        sequence
+    }
+
+    #[test]
+    fn a_graph_is_made_the_second_time_and_not_again_where_it_was_refused() {
+        let mut graphs = Graphs::default();
+        let mut asked = Vec::new();
+        for value in [1, 2, 1, 1, 3, 2, 2, 1] {
+            let graph = graphs.of(&fill(value), |_| {
+                asked.push(value);
+                None
+            });
+            assert!(graph.is_none());
+        }
+        assert_eq!(asked, [1, 2]);
+        assert_eq!(graphs.count(), 0);
+    }
+
+    #[test]
+    fn the_sequence_that_has_not_come_for_longest_is_forgotten() {
+        let mut graphs = Graphs::default();
+        let mut see = |value: u8| {
+            let mut known = false;
+            graphs.of(&fill(value), |_| {
+                known = true;
+                None
+            });
+            known
+        };
+        (0..REMEMBERED as u8).for_each(|value| assert!(!see(value)));
+        assert!(see(0));
+        assert!(!see(100), "a new one, for which 1 goes");
+        assert!(!see(1), "for which 2 goes");
+        assert!(see(3));
+    }
+}

@@ -74,7 +74,8 @@ pub(super) unsafe fn list(queue: &dyn Queue, grid: &Grid, query: &ListQuery, lis
 fn room(grid: &Grid, query: &ListQuery, list: &DeviceList) -> Option<usize> {
     let neighbors = grid.plan.neighbors;
     let uniform = query.law.variable == 0 && !grid.has_classes();
-    if list.staging.overflowed || !uniform || query.images || !(neighbors <= LIKELY * STAGED_ROW as f64) {
+    let few = neighbors <= LIKELY * STAGED_ROW as f64;
+    if list.staging.overflowed || !uniform || query.images || !few {
         return None;
     }
     let sides = if query.kind == ListKind::Half { 0.5 } else { 1.0 };
