@@ -33,3 +33,4 @@ pub use record::{Energy, Measurement, Outcome, Record, Series, Spread};
 pub use runner::{Progress, Summary, run};
 pub use start::Start;
 pub use suite::Suite;
+pub(crate) use suites::paper_a_names;

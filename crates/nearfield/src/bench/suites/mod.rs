@@ -20,6 +20,9 @@ use nearfield_core::{Boundary, Images, Maintenance, Method, Plan, Skin};
 /// Particles above which all pairs are too many to be of interest.
 const BRUTE_LIMIT: usize = 20_000;
 
+/// Skin of lists in paper A's cases: the same everywhere, so that machines are compared by the same work.
+const SKIN: Skin = Skin::Fixed(0.3);
+
 /// Every method with its defaults, all pairs for small systems only.
 fn plans(n: usize) -> Vec<Plan> {
     let methods = Method::ALL.iter().filter(|&&method| method != Method::Brute || n <= BRUTE_LIMIT);
@@ -37,7 +40,13 @@ fn plans_at_rest(n: usize) -> Vec<Plan> {
 fn paper_a(n: usize, positions: Positions, radii: PaperRadii, boundary: Boundary) -> Case {
     let name = paper_a_name(positions, radii, boundary);
     let start = Start::paper_a(n, positions, radii, boundary, 1.0);
-    Case { family: name.clone(), name, start, plans: plans(n), measure: Measure::Steps }
+    let plans = plans(n).into_iter().map(|plan| Plan { skin: SKIN, ..plan }).collect();
+    Case { family: name.clone(), name, start, plans, measure: Measure::Steps }
+}
+
+/// Names of all of paper A's cases, in the order of its table 2.
+pub fn paper_a_names() -> Vec<String> {
+    paper_a_grid().map(|(positions, radii, boundary)| paper_a_name(positions, radii, boundary)).collect()
 }
 
 fn paper_a_name(positions: Positions, radii: PaperRadii, boundary: Boundary) -> String {

@@ -2,7 +2,7 @@
 
 use super::{DeviceNames, by_method, sizes_note};
 use crate::{
-    bench::{Record, Suite},
+    bench::{Record, Suite, paper_a_names},
     report::{
         chart::{Axis, Figure, Panel, Series, Style},
         palette::{Look, Marker},
@@ -16,6 +16,11 @@ use nearfield_core::Method;
 
 pub(super) fn section(records: &[&Record]) -> Section {
     let (mut figures, mut tables) = (Vec::new(), Vec::new());
+    // Suites may have been measured in parts, in any order.
+    let order = paper_a_names();
+    let mut records = records.to_vec();
+    records.sort_by_key(|record| order.iter().position(|name| *name == record.case));
+    let records = &records[..];
     for (device, name) in DeviceNames::of(records).iter() {
         let of_device: Vec<&Record> = records.iter().copied().filter(|r| r.device_name == *device).collect();
         for n in sizes(&of_device) {
