@@ -75,7 +75,7 @@ def run(m, steps, threads, tolerance, integrator):
         log = (path / "md.log").read_text()
     wall = float(re.search(r"Time:\s+\S+\s+(\S+)", log).group(1))
     simd = re.search(r"SIMD instructions:\s+(\S+)", log).group(1)
-    lists = re.findall(r"(?:outer|inner) list: .*", log)
+    lists = re.findall(r"\S+ list: updated.*", log)
     return n * (steps // 2) / wall / 1e6, simd, lists
 
 

@@ -105,6 +105,24 @@ impl Coefficients for Typed<'_> {
     }
 }
 
+/// One type and per-particle radii, without shifts at the cutoff: by value, so that loops are vectorised.
+#[derive(Clone, Copy, Debug)]
+pub struct ScaledCut {
+    epsilon: f32,
+    sigma_per_range: f32,
+}
+
+impl Coefficients for ScaledCut {
+    const VARIABLE_RANGE: bool = true;
+    const TYPED: bool = false;
+
+    #[inline(always)]
+    fn get(&self, _: u32, _: u32, range: f32) -> PairCoefficients<f32> {
+        let sigma = range * self.sigma_per_range;
+        PairCoefficients { epsilon: self.epsilon, sigma, range, energy_shift: 0.0, force_shift: 0.0 }
+    }
+}
+
 /// Per-particle radii: sigma = range / `radius_per_sigma`, epsilon by type.
 #[derive(Debug)]
 pub struct RadiusScaled<'a, P> {
@@ -165,6 +183,13 @@ impl Interaction {
     pub fn epsilon_table(&self) -> Vec<f32> {
         let pairs = self.types.iter().flat_map(|a| self.types.iter().map(move |b| (a, b)));
         pairs.map(|(a, b)| self.mixing.mix(a, b).0 as f32).collect()
+    }
+
+    /// The same as [`Interaction::radius_scaled`] where there is one type and nothing is shifted; `None` elsewhere.
+    pub fn scaled_cut(&self) -> Option<ScaledCut> {
+        let is_simple = self.types.len() == 1 && self.truncation == Truncation::Cut;
+        let epsilon = *self.epsilon_table().first()?;
+        is_simple.then_some(ScaledCut { epsilon, sigma_per_range: 1.0 / self.radius_per_sigma })
     }
 
     /// Range-scaled coefficients for per-particle radii. `potential` is the one of this interaction, `epsilon` its

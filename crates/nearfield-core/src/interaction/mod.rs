@@ -5,7 +5,7 @@ mod law;
 mod mixing;
 mod tail;
 
-pub use coefficients::{Coefficients, PairCoefficients, RadiusScaled, Single, Typed};
+pub use coefficients::{Coefficients, PairCoefficients, RadiusScaled, ScaledCut, Single, Typed};
 pub use law::{PairLaw, Truncated};
 pub use mixing::Mixing;
 pub use tail::TailCorrection;

@@ -62,6 +62,7 @@ macro_rules! with_coefficients {
                 let $coefficients = Typed::new(&table);
                 $body
             }
+            Radii::PerParticle(_) if let Some($coefficients) = interaction.scaled_cut() => $body,
             Radii::PerParticle(_) => {
                 let epsilon = interaction.epsilon_table();
                 let $coefficients = interaction.radius_scaled($potential, &epsilon);
