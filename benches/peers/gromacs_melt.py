@@ -37,7 +37,7 @@ verlet-buffer-tolerance = {tolerance}
 coulombtype = Cut-off
 rcoulomb = {cutoff}
 rvdw = {cutoff}
-vdw-modifier = None
+vdw-modifier = Potential-shift
 tcoupl = no
 gen-vel = yes
 gen-temp = {temperature}
@@ -75,7 +75,7 @@ def run(m, steps, threads, tolerance, integrator):
         log = (path / "md.log").read_text()
     wall = float(re.search(r"Time:\s+\S+\s+(\S+)", log).group(1))
     simd = re.search(r"SIMD instructions:\s+(\S+)", log).group(1)
-    lists = re.findall(r"\S+ list: updated.*", log)
+    lists = re.findall(r"(?:\w+ list: )?updated every .*rlist.*", log)
     return n * (steps // 2) / wall / 1e6, simd, lists
 
 
