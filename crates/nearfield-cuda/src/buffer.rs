@@ -79,11 +79,7 @@ impl<T: Layout> Buffer<T> {
     /// # Errors
     /// As [`Queue::fill`].
     pub fn zero_by(&mut self, queue: &dyn Queue) -> Result<()> {
-        if self.len == 0 {
-            return Ok(());
-        }
-        // SAFETY: the array is that long.
-        unsafe { queue.fill(self.address, 0, self.len * size_of::<T>()) }
+        self.fill_by(queue, 0)
     }
 
     /// Sets every byte to `value`.
@@ -91,11 +87,15 @@ impl<T: Layout> Buffer<T> {
     /// # Errors
     /// As [`Queue::fill`].
     pub fn fill(&mut self, value: u8) -> Result<()> {
+        self.fill_by(&*self.gpu, value)
+    }
+
+    fn fill_by(&self, queue: &dyn Queue, value: u8) -> Result<()> {
         if self.len == 0 {
             return Ok(());
         }
         // SAFETY: the array is that long.
-        unsafe { self.gpu.fill(self.address, value, self.len * size_of::<T>()) }
+        unsafe { queue.fill(self.address, value, self.len * size_of::<T>()) }
     }
 
     /// Resizes to the data and copies it.

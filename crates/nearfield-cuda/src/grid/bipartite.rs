@@ -1,6 +1,6 @@
 //! Neighbours of one set of points in another.
 
-use super::Grid;
+use super::{Grid, query::number_slots};
 use crate::{
     DeviceList, Gpu,
     gpu::{Queue, launch},
@@ -9,7 +9,7 @@ use nearfield_core::Result;
 use nearfield_kernels::{
     Kernel, Ptr,
     kernels::{self, CLUSTER},
-    layouts::{Box3, Law, ListArgs, NumberArgs, QueryArgs},
+    layouts::{Box3, Law, ListArgs, QueryArgs},
 };
 
 /// What is looked for among points.
@@ -34,12 +34,8 @@ pub struct PointQuery<'a> {
 /// As [`Gpu::allocate`] and [`Queue::launch`].
 pub unsafe fn count(gpu: &dyn Gpu, query: &PointQuery, list: &mut DeviceList) -> Result<()> {
     list.start(query.queries.n)?;
-    list.number.resize(query.points.n)?;
-    let n = query.points.n as u32;
-    let arguments =
-        NumberArgs { particle: query.points.particle.ptr(), id: query.id, number: list.number.ptr(), n, unused: 0 };
-    // SAFETY: the caller's promise, and a number for each slot.
-    unsafe { launch(gpu, kernels::NUMBER_SLOTS, u64::from(n), &arguments)? };
+    // SAFETY: the caller's promise.
+    unsafe { number_slots(gpu, query.points, query.id, list)? };
     enqueue(gpu, kernels::QUERY_COUNT, query, list)
 }
 

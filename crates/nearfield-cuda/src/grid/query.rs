@@ -142,25 +142,20 @@ pub unsafe fn count(queue: &dyn Queue, candidates: Candidates, query: &ListQuery
     list.start(candidates.n())?;
     if let Candidates::Cells(grid) = candidates {
         // SAFETY: the caller's promise.
-        unsafe { number_slots(queue, grid, query, list)? };
+        unsafe { number_slots(queue, grid, query.id, list)? };
     }
     let kernel = list_kernels(candidates, query).count;
     // SAFETY: the caller's promise, and a count for each row.
     unsafe { launch(queue, kernel, candidates.threads(), &arguments(candidates, query, list)) }
 }
 
-/// Enqueues the input indices of slots.
+/// Enqueues the input indices of slots, from those of places.
 ///
 /// # Safety
-/// As [`count`].
-pub(super) unsafe fn number_slots(
-    queue: &dyn Queue,
-    grid: &Grid,
-    query: &ListQuery,
-    list: &mut DeviceList,
-) -> Result<()> {
+/// `id` is the address of an index for each particle of the cells.
+pub(super) unsafe fn number_slots(queue: &dyn Queue, grid: &Grid, id: Ptr<u32>, list: &mut DeviceList) -> Result<()> {
     list.number.resize(grid.n)?;
-    let (particle, id, number) = (grid.particle.ptr(), query.id, list.number.ptr());
+    let (particle, number) = (grid.particle.ptr(), list.number.ptr());
     let arguments = NumberArgs { particle, id, number, n: grid.n as u32, unused: 0 };
     // SAFETY: the caller's promise, and a number for each slot.
     unsafe { launch(queue, kernels::NUMBER_SLOTS, grid.n as u64, &arguments) }
@@ -174,8 +169,11 @@ pub(super) unsafe fn number_slots(
 /// # Errors
 /// As [`count`].
 pub unsafe fn list(queue: &dyn Queue, candidates: Candidates, query: &ListQuery, list: &mut DeviceList) -> Result<()> {
-    // SAFETY: the caller's promise.
-    list.at_once = matches!(candidates, Candidates::Cells(grid) if unsafe { staged::list(queue, grid, query, list)? });
+    list.at_once = match candidates {
+        // SAFETY: the caller's promise.
+        Candidates::Cells(grid) => unsafe { staged::list(queue, grid, query, list)? },
+        Candidates::All { .. } => false,
+    };
     if list.at_once {
         return Ok(());
     }

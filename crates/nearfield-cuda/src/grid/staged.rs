@@ -32,13 +32,14 @@ const ROOM: f64 = 1.5;
 /// As [`super::list`].
 pub(super) unsafe fn list(queue: &dyn Queue, grid: &Grid, query: &ListQuery, list: &mut DeviceList) -> Result<bool> {
     let Some(capacity) = room(grid, query, list) else { return Ok(false) };
-    list.start(grid.n)?;
+    // Each row has one warp that writes its count.
+    list.count.resize(grid.n)?;
     list.staging.staged.resize(capacity)?;
     list.staging.start.resize(grid.n)?;
     list.staging.control.resize(1)?;
     list.staging.control.zero()?;
     // SAFETY: the caller's promise.
-    unsafe { query::number_slots(queue, grid, query, list)? };
+    unsafe { query::number_slots(queue, grid, query.id, list)? };
     let candidates = Candidates::Cells(grid);
     let stage = StageArgs {
         list: query::arguments(candidates, query, list),

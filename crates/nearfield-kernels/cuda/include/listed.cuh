@@ -18,10 +18,6 @@
 // Most entries of a segment.
 #define SEGMENT_ENTRIES (15 * WARP)
 
-__device__ inline u32 clusters_of(u32 n) {
-    return (n + CLUSTER - 1) / CLUSTER;
-}
-
 __device__ inline u64 step_of(const ListedArgs& a) {
     return a.control->first + a.index;
 }
