@@ -123,8 +123,7 @@ impl Integrator {
             *half_kick = self.half_kick[kind as usize];
         }
         let (lo, hi) = (self.sim_box.lo()[axis], self.sim_box.hi()[axis]);
-        // Of each component: below it, rounding included, a particle is slower than the limit.
-        let slow = 0.577 * self.speed_limit;
+        let slow = self.slow();
         let mut outside = 0;
         for k in 0..N {
             v[k] += half_kick[k] * force[k];
@@ -157,9 +156,15 @@ impl Integrator {
         }
     }
 
+    /// Of each component of a velocity: below it, rounding included, a particle is slower than the limit.
+    #[inline(always)]
+    fn slow(&self) -> f32 {
+        0.577 * self.speed_limit
+    }
+
     /// Shortens the velocities of those that the limit concerns.
     fn limit_many(&self, [vx, vy, vz]: [&mut [f32]; 3]) {
-        let slow = 0.577 * self.speed_limit;
+        let slow = self.slow();
         for ((x, y), z) in vx.iter_mut().zip(vy).zip(vz) {
             if x.abs().max(y.abs()).max(z.abs()) > slow {
                 let mut p = Moving { position: [0.0; 3], velocity: [*x, *y, *z], image: [0; 3] };
