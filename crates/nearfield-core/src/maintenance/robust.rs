@@ -30,12 +30,20 @@ impl RecentMedian {
     }
 }
 
-/// Slope of `samples` over their index by Theil's incomplete method: the median slope between each sample of the
-/// first half and its partner half the series later. A quarter of the samples may be outliers. `None` below two.
-pub(super) fn slope(samples: &[f64]) -> Option<f64> {
+/// A measurement and the step it was made in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Sample {
+    pub step: f64,
+    pub value: f64,
+}
+
+/// Slope of `samples`, which are in the order of their steps, by Theil's incomplete method: the median slope between each
+/// sample of the first half and its partner half the series later. A quarter of the samples may be outliers. `None` below
+/// two.
+pub(super) fn slope(samples: &[Sample]) -> Option<f64> {
     let half = samples.len().div_ceil(2);
-    let mut slopes: Vec<f64> =
-        samples.iter().zip(&samples[half..]).map(|(early, late)| (late - early) / half as f64).collect();
+    let between = |(early, late): (&Sample, &Sample)| (late.value - early.value) / (late.step - early.step);
+    let mut slopes: Vec<f64> = samples.iter().zip(&samples[half..]).map(between).collect();
     median(&mut slopes)
 }
 
@@ -45,9 +53,10 @@ mod tests {
 
     #[test]
     fn the_slope_of_a_line_is_exact_and_survives_outliers() {
-        let mut line: Vec<f64> = (0..12).map(|k| 3.0 + 0.5 * f64::from(k)).collect();
+        let mut line: Vec<Sample> =
+            (0..12).map(|k| f64::from(k * k)).map(|step| Sample { step, value: 3.0 + 0.5 * step }).collect();
         assert_eq!(slope(&line), Some(0.5));
-        (line[2], line[9]) = (100.0, 200.0);
+        (line[2].value, line[9].value) = (100.0, 200.0);
         assert_eq!(slope(&line), Some(0.5));
         assert_eq!(slope(&line[..1]), None);
         assert_eq!(slope(&[]), None);
