@@ -62,6 +62,11 @@ impl Vec3s {
         (0..self.len()).map(|i| self.get(i))
     }
 
+    /// The largest length of a vector; zero where there are none.
+    pub fn largest_norm(&self) -> f32 {
+        self.iter().map(|[x, y, z]| x * x + y * y + z * z).fold(0.0, f32::max).sqrt()
+    }
+
     /// The three component arrays.
     pub fn axes(&self) -> [&Vec<f32>; 3] {
         [&self.x, &self.y, &self.z]

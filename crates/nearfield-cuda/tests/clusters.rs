@@ -60,6 +60,10 @@ fn compare(engine: &mut CudaEngine, system: &System, what: &str) {
     }
 }
 
+fn with_skin() -> Plan {
+    Plan { skin: Skin::Fixed(0.3), ..Plan::new(Method::Cluster) }
+}
+
 /// Steps by lists that age, in boxes where particles see two images of each other and where none does, with particles
 /// that cross faces.
 fn check_lists(cases: &[(usize, f32, f32, f32)], variant: Variant, steps: u64) {
@@ -114,7 +118,7 @@ fn lennard_jones_liquids_follow_the_trajectory_of_all_pairs() {
     let systems =
         [(cases::liquid(5, 1.0, 0.05, 2.5, 1), Variant::List), (wca, Variant::List), (gas, Variant::SparseList)];
     for (system, variant) in systems {
-        let engine = follows_all_pairs(&system, &Plan::new(Method::Cluster), 2e-3);
+        let engine = follows_all_pairs(&system, &with_skin(), 2e-3);
         assert_eq!(engine.cluster_variant(), Some(variant));
         assert!(engine.report().list_builds < 30, "{:?}", engine.report());
     }
@@ -239,7 +243,7 @@ fn lists_that_outgrow_their_room_within_a_call_get_more() {
 fn lists_that_outgrow_the_budget_within_a_call_are_given_up() {
     let system = collapsing();
     // Not too small for the first list.
-    let plan = Plan { memory_budget: 60_000, ..Plan::new(Method::Cluster) };
+    let plan = Plan { memory_budget: 60_000, ..with_skin() };
     let mut engine = loaded(&system, &plan);
     engine.advance(&Dynamics::nve(0.004), 0, 1, Quantities::FORCES).expect("a run");
     assert_eq!(engine.cluster_variant(), Some(Variant::List));
@@ -256,6 +260,34 @@ fn lists_that_outgrow_the_budget_within_a_call_are_given_up() {
     for (a, b) in found.velocity.axes().into_iter().flatten().zip(expected.velocity.axes().into_iter().flatten()) {
         assert!((a - b).abs() < 1e-3, "{a} {b}");
     }
+}
+
+fn a_chosen_skin_follows_the_motion_and_misses_no_pair() {
+    let system = cases::liquid(6, 1.0, 0.05, 2.0, 1);
+    let mut engine = loaded(&system, &Plan::new(Method::Cluster));
+    let mut skins = Vec::new();
+    for round in 0..4 {
+        engine.advance(&Dynamics::nve(0.004), 110 * round, 110, Quantities::FORCES).expect("a run");
+        compare(&mut engine, &system, &format!("round {round}"));
+        skins.push(engine.report().skin);
+    }
+    assert!(skins.windows(2).any(|pair| pair[0] != pair[1]), "{skins:?}");
+    assert!(skins.iter().all(|&skin| skin > 0.1 && skin < 3.0), "{skins:?}");
+    let report = engine.report();
+    assert!(report.list_builds * 4 < report.evaluations, "{report:?}");
+}
+
+fn a_chosen_skin_gives_way_where_memory_is_short() {
+    let system = collapsing();
+    let plan = Plan { memory_budget: 60_000, ..Plan::new(Method::Cluster) };
+    let mut engine = loaded(&system, &plan);
+    engine.advance(&Dynamics::nve(0.004), 0, 1, Quantities::FORCES).expect("a run");
+    let before = engine.report();
+    engine.advance(&Dynamics::nve(0.004), 1, 120, Quantities::FORCES).expect("a run");
+    let report = engine.report();
+    assert!(report.skin < 0.5 * before.skin, "{before:?} {report:?}");
+    assert!(report.list_builds > 3 && report.batched_evaluations < report.evaluations, "{report:?}");
+    compare(&mut engine, &system, "a collapse");
 }
 
 fn one_particle_and_none_make_their_steps() {
@@ -276,7 +308,7 @@ fn one_particle_and_none_make_their_steps() {
 
 fn a_list_beyond_the_budget_is_not_kept() {
     let system = cases::liquid(4, 1.0, 0.05, 2.2, 1);
-    let mut engine = loaded(&system, &Plan { memory_budget: 10_000, ..Plan::new(Method::Cluster) });
+    let mut engine = loaded(&system, &Plan { memory_budget: 10_000, ..with_skin() });
     engine.advance(&Dynamics::nve(0.004), 0, 5, Quantities::FORCES).expect("a run");
     compare(&mut engine, &system, "without a list");
     assert_eq!(engine.cluster_variant(), Some(Variant::Pairs));
@@ -285,7 +317,7 @@ fn a_list_beyond_the_budget_is_not_kept() {
 }
 
 fn main() {
-    let tests: [(&str, fn()); 10] = [
+    let tests: [(&str, fn()); 12] = [
         ("lists_of_any_age_hold_every_pair", lists_of_any_age_hold_every_pair),
         ("sparse_lists_of_any_age_hold_every_pair", sparse_lists_of_any_age_hold_every_pair),
         ("pairs_are_found_once_in_dense_systems", pairs_are_found_once_in_dense_systems),
@@ -303,6 +335,8 @@ fn main() {
             "lists_that_outgrow_the_budget_within_a_call_are_given_up",
             lists_that_outgrow_the_budget_within_a_call_are_given_up,
         ),
+        ("a_chosen_skin_follows_the_motion_and_misses_no_pair", a_chosen_skin_follows_the_motion_and_misses_no_pair),
+        ("a_chosen_skin_gives_way_where_memory_is_short", a_chosen_skin_gives_way_where_memory_is_short),
         ("one_particle_and_none_make_their_steps", one_particle_and_none_make_their_steps),
         ("a_list_beyond_the_budget_is_not_kept", a_list_beyond_the_budget_is_not_kept),
     ];

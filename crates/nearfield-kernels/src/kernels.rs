@@ -81,6 +81,8 @@ pub const CLUSTER_FORCES: ByForce<Kernel<GatherArgs>> = ByForce {
 
 /// Lists of what is near each [`CLUSTER`].
 pub const LIST_CLUSTERS: Kernel<ClusterListArgs> = Kernel::new("cluster_list", "list_clusters", 128);
+/// The same where most lists are empty, of both sides, in cells that hold about one particle; a thread for each particle.
+pub const LIST_SPARSE: Kernel<ClusterListArgs> = Kernel::new("sparse_list", "list_sparse", 128);
 /// Most chunks of a segment of these lists but the last.
 pub const SEGMENT: usize = 15;
 /// Says which steps may be made by lists.

@@ -35,6 +35,7 @@ pub const MODULES: &[Module] = modules![
     "order",
     "queries",
     "scan",
+    "sparse_list",
     "staged_lists",
     "cells",
     "brute",

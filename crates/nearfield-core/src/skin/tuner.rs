@@ -32,8 +32,8 @@ const SURPRISE: f64 = 2.5;
 /// A list that has been outrun, and its work in any one unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ListUse {
-    /// Steps that it served.
-    pub steps: u64,
+    /// Steps that it served, or that each of several served in the mean.
+    pub steps: f64,
     /// Work of making it that does not depend on what it holds.
     pub sorting: f64,
     /// Work of making it that is proportional to what it holds.
@@ -104,11 +104,11 @@ impl SkinTuner {
     /// Learns from a list of the present skin that has been outrun, and chooses the next skin.
     pub fn record(&mut self, list: ListUse) {
         let skin = f64::from(self.skin());
-        if !self.is_auto() || list.steps == 0 || skin <= 0.0 {
+        if !self.is_auto() || list.steps <= 0.0 || skin <= 0.0 {
             return;
         }
         let size = list.listing.max(LEAST_LISTING * list.sorting);
-        let (learned, steps) = (&mut self.learned, list.steps as f64);
+        let (learned, steps) = (&mut self.learned, list.steps);
         if !learned.life.is_empty() {
             let foreseen = learned.life.at(skin, learned.life.exponent(EXPECTED[0]));
             if steps > SURPRISE * foreseen || SURPRISE * steps < foreseen {
@@ -206,7 +206,7 @@ mod tests {
                 random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
                 let chance = 1.0 + 0.1 * (f64::from(random >> 8) / f64::from(1 << 24) - 0.5);
                 let skin = f64::from(tuner.skin());
-                let steps = ((self.life)(skin) * chance).round().max(1.0) as u64;
+                let steps = ((self.life)(skin) * chance).round().max(1.0);
                 let listing = self.listing(skin);
                 tuner.record(ListUse { steps, sorting: self.sorting, listing, reading: self.reading * listing });
                 if list >= 20 {

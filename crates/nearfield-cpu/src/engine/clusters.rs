@@ -90,13 +90,13 @@ impl StoredClusters {
         if let Some((steps, Counts { entries, prunings })) = last {
             let per_step = prunings.saturating_sub(1) as f64 / steps.max(1) as f64;
             skin.record(ListUse {
-                steps,
+                steps: steps as f64,
                 sorting: SORTING * state.len() as f64,
                 listing: (LISTING + PRUNING) * entries as f64,
                 reading: (STEPPING + PRUNING * per_step) * entries as f64,
             });
         } else if skin.is_auto() {
-            skin.guess(dt * state.largest_speed());
+            skin.guess(dt * state.velocity.largest_norm());
         }
     }
 }

@@ -100,13 +100,13 @@ impl StoredList {
         if let Some(built) = self.built_at.replace(steps) {
             let entries = self.list.n_entries() as f64;
             skin.record(ListUse {
-                steps: steps - built,
+                steps: (steps - built) as f64,
                 sorting: SORTING * state.len() as f64,
                 listing: LISTING * entries,
                 reading: READING * entries,
             });
         } else if skin.is_auto() {
-            skin.guess(dt * state.largest_speed());
+            skin.guess(dt * state.velocity.largest_norm());
         }
         self.skin = skin.skin();
     }

@@ -72,13 +72,6 @@ impl State {
         exact_sum(self.len(), |i| self.kinetic_energy_of(i, types))
     }
 
-    /// The speed of the fastest particle.
-    pub fn largest_speed(&self) -> f32 {
-        let [x, y, z] = self.velocity.axes();
-        let squares = (x, y, z).into_par_iter().with_min_len(4096).map(|(x, y, z)| x * x + y * y + z * z);
-        squares.reduce(|| 0.0, f32::max).sqrt()
-    }
-
     /// The particles as a structure's input, with the radii that the structure shall cover.
     pub fn input<'a>(&'a self, physics: &'a Physics, radii: InputRadii<'a>) -> Input<'a> {
         let [x, y, z] = self.position.axes();

@@ -1,5 +1,6 @@
 //! Lists of what is near each cluster, and forces and steps by them.
 
+use super::Variant;
 use crate::{
     Buffer, Gpu,
     engine::{physics::Physics, state::State},
@@ -10,7 +11,9 @@ use bytemuck::Zeroable;
 use nearfield_core::{Report, Result};
 use nearfield_kernels::{
     Float4, Kernel, Ptr,
-    kernels::{self, CLUSTER, LISTED_FORCES, LISTED_PAIRS, MOVE_LISTED, SEGMENT, STEP_SPARSE},
+    kernels::{
+        self, CLUSTER, LIST_CLUSTERS, LIST_SPARSE, LISTED_FORCES, LISTED_PAIRS, MOVE_LISTED, SEGMENT, STEP_SPARSE,
+    },
     layouts::{
         self, ClusterControl, ClusterControlArgs, ClusterListArgs, ClusterStepArgs, ClustersMovedArgs, GatherArgs,
         Integrator, Law, ListedArgs, Results, Segment, Status,
@@ -45,12 +48,26 @@ pub(crate) struct ClusterList {
     valid: bool,
     /// Whether it holds each pair once.
     once: bool,
+    /// Whether most clusters have nothing near them.
+    sparse: bool,
     /// Whether it is known that there was room for the list.
     settled: bool,
     /// Whether the list serves the present positions, where that is known without looking at them.
     known: Option<bool>,
     /// Evaluations by the list.
     served: u64,
+    /// Of lists since that was last asked for.
+    together: Served,
+}
+
+/// What lists have served for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Served {
+    pub lists: u64,
+    /// Evaluations by these.
+    pub evaluations: u64,
+    /// Chunks of the last one.
+    pub chunks: u64,
 }
 
 /// What came of steps.
@@ -81,23 +98,22 @@ pub(crate) struct StepQuery<'a> {
 }
 
 impl ClusterList {
-    /// No list yet, with a skin as far as the box allows it: no pair may be within range and skin at two images.
-    pub fn new(gpu: &Arc<dyn Gpu>, skin: f32, physics: &Physics) -> Self {
-        let skin = skin.min(physics.sim_box.room_around(physics.largest)).max(0.0);
-        // The margins cover roundings of displacements and of coordinates.
-        let limit = 0.5 * skin * (1.0 - 1e-5) - physics.slack;
+    /// No list yet.
+    pub fn new(gpu: &Arc<dyn Gpu>) -> Self {
         Self {
             gpu: gpu.clone(),
-            skin: if limit > 0.0 { skin } else { 0.0 },
-            limit: limit.max(0.0),
+            skin: 0.0,
+            limit: 0.0,
             segment: Buffer::new(gpu, "lists of clusters"),
             entry: Buffer::new(gpu, "lists of clusters"),
             control: Buffer::new(gpu, "lists of clusters"),
             valid: false,
             once: false,
+            sparse: false,
             settled: false,
             known: None,
             served: 0,
+            together: Served::default(),
         }
     }
 
@@ -105,14 +121,23 @@ impl ClusterList {
         self.skin
     }
 
+    /// Forgets the list; others will have this skin.
+    pub fn set_skin(&mut self, skin: f32, physics: &Physics) {
+        // The margins cover roundings of displacements and of coordinates.
+        let limit = 0.5 * skin * (1.0 - 1e-5) - physics.slack;
+        self.skin = if limit > 0.0 { skin } else { 0.0 };
+        self.limit = limit.max(0.0);
+        self.valid = false;
+    }
+
+    /// What lists have served for since this was last asked.
+    pub fn take_served(&mut self) -> Served {
+        std::mem::take(&mut self.together)
+    }
+
     /// Whether there was room for the list, as far as is known.
     pub fn is_settled(&self) -> bool {
         self.settled
-    }
-
-    /// Forgets the list.
-    pub fn invalidate(&mut self) {
-        self.valid = false;
     }
 
     /// Whether the list still holds every pair. Waits for the device unless the last steps were by the list.
@@ -140,17 +165,26 @@ impl ClusterList {
         Ok(self.read_control()?.rebuild_at > 0)
     }
 
-    /// Makes room for a list of positions that the one before does not serve; each pair `once` or from both sides. To be
-    /// called before [`ClusterList::enqueue`].
-    pub fn prepare(&mut self, state: &State, once: bool, budget: u64, report: &mut Report) -> Result<()> {
-        self.once = once;
-        let first = state.len().div_ceil(CLUSTER) as u64 * FIRST_CHUNKS[usize::from(!once)];
+    /// Makes room for a list of positions that the one before does not serve; each pair once, but where lists are sparse or
+    /// `exact`: then from both sides. To be called before [`ClusterList::enqueue`].
+    pub fn prepare(
+        &mut self,
+        state: &State,
+        variant: Variant,
+        exact: bool,
+        budget: u64,
+        report: &mut Report,
+    ) -> Result<()> {
+        self.sparse = variant == Variant::SparseList;
+        self.once = !self.sparse && !exact;
+        let first = state.len().div_ceil(CLUSTER) as u64 * FIRST_CHUNKS[usize::from(!self.once)];
         self.make_room(state, self.room().max(first).min(budget / BYTES_PER_CHUNK))?;
         report.list_builds += 1;
         if self.served == 1 && self.skin > 0.0 && report.list_builds > 1 {
             report.dangerous_builds += 1;
         }
         self.served = 0;
+        self.together.lists += 1;
         (self.valid, self.settled) = (true, false);
         Ok(())
     }
@@ -165,6 +199,7 @@ impl ClusterList {
     pub fn settle(&mut self, physics: &Physics, state: &State, grid: &Grid, budget: u64) -> Result<bool> {
         while !self.settled {
             let needed = u64::from(self.read_control()?.chunks);
+            self.together.chunks = needed;
             if needed * BYTES_PER_CHUNK > budget {
                 self.entry.resize(0)?;
                 self.valid = false;
@@ -219,8 +254,9 @@ impl ClusterList {
             once: u32::from(self.once),
             unused: 0,
         };
+        let (kernel, threads) = if self.sparse { (LIST_SPARSE, state.len()) } else { (LIST_CLUSTERS, 32 * n_clusters) };
         // SAFETY: positions are n, sorted by the grid's cells; segments and entries have room for what is said.
-        unsafe { launch(queue, kernels::LIST_CLUSTERS, 32 * n_clusters as u64, &arguments) }
+        unsafe { launch(queue, kernel, threads as u64, &arguments) }
     }
 
     /// Whether forces are added to: they must be zero before.
@@ -238,6 +274,7 @@ impl ClusterList {
         energy: bool,
     ) -> Result<()> {
         self.served += 1;
+        self.together.evaluations += 1;
         let arguments = self.listed(physics, state, results);
         if self.once {
             return add_pairs(&*self.gpu, LISTED_PAIRS.choose(&physics.law, exact, energy), &arguments);
@@ -307,6 +344,9 @@ impl ClusterList {
         self.settled = u64::from(control.chunks) <= self.room();
         let (made, by_last) = (control.next - step, control.next - control.first);
         self.served = if control.lists > 0 { by_last } else { self.served + by_last };
+        self.together.lists += u64::from(control.lists);
+        self.together.evaluations += made;
+        self.together.chunks = control.chunks.into();
         // A list for which there was no room is of the present positions.
         let fresh = !self.settled || control.rebuild_at > control.next;
         self.known = Some(fresh);

@@ -4,6 +4,7 @@
 mod choice;
 mod list;
 mod pace;
+mod skin;
 mod steps;
 
 pub use choice::Variant;
@@ -19,6 +20,7 @@ use list::ClusterList;
 use nearfield_core::{Plan, Report, Result};
 use nearfield_kernels::{Float4, layouts::Results};
 use pace::Pace;
+use skin::ListSkin;
 use std::sync::Arc;
 
 /// Cells, and lists where they pay.
@@ -27,11 +29,15 @@ pub struct Clusters {
     grid: Grid,
     variant: Variant,
     list: ClusterList,
+    skin: ListSkin,
     pace: Pace,
     deterministic: bool,
     memory_budget: u64,
-    /// Whether the list has proved larger than the budget: pairs are found in cells from then on.
+    /// Whether the list has proved larger than the budget: pairs are found in cells from then on, but where `replan` says
+    /// that a smaller skin is to be tried.
     over_budget: bool,
+    /// Whether cells and skin are to be chosen anew for the next build.
+    replan: bool,
 }
 
 impl Clusters {
@@ -41,16 +47,33 @@ impl Clusters {
             gpu: gpu.clone(),
             grid: Grid::new(gpu),
             variant: Variant::Pairs,
-            list: ClusterList::new(gpu, plan.skin.or_usual(), physics),
+            list: ClusterList::new(gpu),
+            skin: ListSkin::new(plan, physics),
             pace: Pace::new(),
             deterministic: plan.deterministic,
             memory_budget: plan.memory_budget,
             over_budget: false,
+            replan: true,
         }
     }
 
-    /// Chooses cells and the variant by where the particles are. Gives whether that is much as before.
+    /// Takes note that there are to be steps in which a particle moves so far at first.
+    pub(crate) fn expect_steps(&mut self, longest: f32) {
+        self.replan |= self.skin.guess(longest);
+    }
+
+    /// Whether [`Clusters::plan`] is to be called before the next build.
+    pub(crate) fn needs_plan(&self) -> bool {
+        self.replan
+    }
+
+    /// Chooses cells, the skin and the variant by where the particles are. Gives whether that is much as before.
     pub(crate) fn plan(&mut self, sample: &Sample, physics: &Physics) -> bool {
+        if std::mem::take(&mut self.replan) {
+            self.over_budget = false;
+        }
+        self.skin.record(sample.n, self.list.take_served());
+        self.list.set_skin(self.skin.skin(), physics);
         let skin = self.list.skin();
         let survey = physics.survey(sample);
         let with_skin =
@@ -60,7 +83,6 @@ impl Clusters {
         if self.over_budget {
             self.variant = Variant::Pairs;
         }
-        self.list.invalidate();
         self.grid.take(if self.variant.uses_list() || skin == 0.0 { plan } else { CellPlan::new(&survey) })
     }
 
@@ -81,8 +103,8 @@ impl Clusters {
             // SAFETY: the state's positions are n.
             return unsafe { self.grid.build(&*self.gpu, position, state.len(), variable) };
         }
-        let once = self.variant == Variant::List && !self.deterministic;
-        self.list.prepare(state, once, self.memory_budget, report)?;
+        self.list.prepare(state, self.variant, self.deterministic, self.memory_budget, report)?;
+        report.skin = self.list.skin();
         let gpu = self.gpu.clone();
         self.enqueue_list(&*gpu, physics, state)
     }
@@ -104,6 +126,7 @@ impl Clusters {
         }
         report.list_builds -= 1;
         self.over_budget = true;
+        self.replan = self.skin.shrink();
         self.variant = Variant::Pairs;
         // SAFETY: the state's positions are n. The particles were given new places after the cells were built.
         unsafe { self.grid.build(&*self.gpu, state.moving.position.ptr(), state.len(), false) }

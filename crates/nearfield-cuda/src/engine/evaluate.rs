@@ -115,7 +115,8 @@ impl Loaded {
             return Ok(());
         }
         let action = self.next_action()?;
-        if self.structure.needs_plan() && self.planned_at.is_none_or(|then| step >= then + self.plan_interval) {
+        let is_due = self.planned_at.is_none_or(|then| step >= then + self.plan_interval);
+        if self.structure.takes_plans() && (is_due || self.structure.needs_plan()) {
             let much_as_before = self.structure.plan(&self.surveyor.survey(&self.state)?, &self.physics);
             let interval = if much_as_before { 2 * self.plan_interval } else { order::INTERVAL };
             self.plan_interval = interval.min(order::LONGEST_PLAN);

@@ -79,7 +79,7 @@ impl Loaded {
         }
         let lister = lister.as_mut().expect("it was just made");
         let planned = lister.planned_at.is_some_and(|then| report.evaluations < then + INTERVAL);
-        if lister.structure.needs_plan() && !planned {
+        if lister.structure.takes_plans() && !planned {
             lister.structure.plan(&surveyor.survey(state)?, physics);
             lister.planned_at = Some(report.evaluations);
         }

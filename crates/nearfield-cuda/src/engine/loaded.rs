@@ -18,6 +18,8 @@ pub(crate) struct Loaded {
     pub results: Results,
     /// Where positions go that move while others are still looked at.
     pub next_position: Buffer<Float4>,
+    /// Of the particles as they were loaded.
+    pub largest_speed: f32,
     pub constants: Constants,
     pub cell_stepper: CellStepper,
     pub totalizer: Totalizer,
@@ -54,6 +56,7 @@ impl Loaded {
             state: State::new(gpu, system)?,
             results: Results::new(gpu),
             next_position: Buffer::new(gpu, "next positions"),
+            largest_speed: system.particles.velocity.largest_norm(),
             constants: Constants::new(gpu),
             cell_stepper: CellStepper::new(gpu),
             totalizer: Totalizer::new(gpu, &system.interaction)?,

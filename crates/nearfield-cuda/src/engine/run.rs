@@ -11,6 +11,9 @@ impl Loaded {
     pub fn advance(&mut self, dynamics: &Dynamics, from: u64, steps: u64, quantities: Quantities) -> Result<Totals> {
         dynamics.validate()?;
         self.physics.allow_overlaps(dynamics.max_displacement > 0.0);
+        if let Some(clusters) = self.structure.clusters_mut() {
+            clusters.expect_steps(dynamics.dt * self.largest_speed);
+        }
         if !self.forces_valid || steps == 0 {
             let wanted = if steps == 0 { quantities } else { Quantities::FORCES };
             self.evaluate(wanted, from)?;

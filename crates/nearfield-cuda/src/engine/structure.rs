@@ -62,8 +62,13 @@ impl Structure {
     }
 
     /// Whether [`Structure::plan`] is to be called now and then.
-    pub fn needs_plan(&self) -> bool {
+    pub fn takes_plans(&self) -> bool {
         matches!(self, Self::Cells(_) | Self::Clusters(_))
+    }
+
+    /// Whether it is to be called before the next build.
+    pub fn needs_plan(&self) -> bool {
+        if let Self::Clusters(clusters) = self { clusters.needs_plan() } else { false }
     }
 
     /// Makes choices that depend on how the particles lie. Gives whether they lie much as before.

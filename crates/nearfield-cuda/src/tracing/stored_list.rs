@@ -122,6 +122,7 @@ impl StoredList {
                 return Ok(Outcome::Done);
             }
             report.list_builds += 1;
+            report.skin = self.skin;
             if self.age == 1 && self.skin > 0.0 && report.list_builds > 1 {
                 report.dangerous_builds += 1;
             }

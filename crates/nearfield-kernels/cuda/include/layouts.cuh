@@ -589,7 +589,7 @@ struct SortParticlesArgs {
 };
 static_assert(sizeof(SortParticlesArgs) == 696, "SortParticlesArgs differs between host and device");
 
-// Arguments of `list_clusters`.
+// Arguments of `list_clusters` and `list_sparse`.
 struct ClusterListArgs {
     // The interaction, its cutoff longer by the skin.
     Law law;

@@ -69,7 +69,7 @@ layouts! {
         pub control: Ptr<ClusterControl>,
     }
 
-    /// Arguments of `list_clusters`.
+    /// Arguments of `list_clusters` and `list_sparse`.
     pub struct ClusterListArgs {
         /// The interaction, its cutoff longer by the skin.
         pub law: Law,
