@@ -94,6 +94,21 @@ fn a_suite_that_was_cut_short_goes_on_where_it_stopped() {
 }
 
 #[test]
+fn a_run_of_steps_is_a_measurement_of_its_own() {
+    let folder = tempdir().unwrap();
+    let options = Options { filter: "lattice r=1 wall".into(), methods: vec![Method::Cell], ..tiny() };
+    run(Suite::Methods, folder.path(), &options);
+    let long = Options { steps: Some(30), ..options };
+    assert_eq!(run(Suite::Methods, folder.path(), &long).measured, 1);
+    let records = records(Suite::Methods, folder.path());
+    let names: Vec<_> = records.iter().map(|record| record.case.as_str()).collect();
+    assert_eq!(names, ["lattice r=1 wall", "lattice r=1 wall, 30 steps"]);
+    let Outcome::Measured(measurement) = &records[1].outcome else { panic!("{:?}", records[1].outcome) };
+    assert_eq!((measurement.steps, measurement.time.repetitions), (30, 1));
+    assert!(measurement.builds >= 30, "{measurement:?}");
+}
+
+#[test]
 fn nothing_begins_after_the_time_is_over() {
     let folder = tempdir().unwrap();
     let options = Options { stop_after: Some(0.0), ..tiny() };

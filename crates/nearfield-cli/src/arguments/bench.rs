@@ -62,6 +62,9 @@ pub struct BenchArguments {
     /// Only cases whose name contains this, as in "lattice r=1".
     #[arg(long, value_name = "TEXT", default_value = "")]
     pub filter: String,
+    /// One run of so many steps from the start for each measurement of whole steps, instead of a few steps repeated.
+    #[arg(long)]
+    pub steps: Option<u64>,
     /// Seconds to spend on each measurement.
     #[arg(long)]
     pub seconds: Option<f64>,

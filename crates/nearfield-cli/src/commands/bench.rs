@@ -31,6 +31,7 @@ pub fn run(arguments: &BenchArguments) -> Result<(), Failure> {
         filter: arguments.filter.clone(),
         seconds: arguments.seconds,
         patience: arguments.patience,
+        steps: arguments.steps,
         stop_after: arguments.stop_after,
     };
     let mut total = Summary::default();

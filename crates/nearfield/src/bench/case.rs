@@ -23,6 +23,11 @@ pub struct Case {
 pub enum Measure {
     /// Whole steps: upkeep of the structure, forces, integration.
     Steps,
+    /// The same in one run of so many steps from the start, as particles leave it.
+    Run {
+        /// Number of steps.
+        steps: u64,
+    },
     /// Force evaluations of particles at rest.
     Evaluations,
     /// Structure and query time of each of so many steps, once.

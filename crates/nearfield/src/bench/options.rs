@@ -18,6 +18,8 @@ pub struct Options {
     pub methods: Vec<Method>,
     /// Only cases whose name contains this.
     pub filter: String,
+    /// One run of so many steps from the start, where a suite repeats a few.
+    pub steps: Option<u64>,
     /// Seconds to spend on each measurement.
     pub seconds: Option<f64>,
     /// A measurement that is predicted to take longer than so many seconds for one evaluation is not begun.

@@ -1,7 +1,7 @@
 //! Runs a suite.
 
 use super::{
-    Case, Machine, Options, Outcome, Record, Suite,
+    Case, Machine, Measure, Options, Outcome, Record, Suite,
     file::ResultsFile,
     measure::measure,
     predict::{evaluation_seconds, scout},
@@ -82,6 +82,10 @@ fn cases(suite: Suite, options: &Options) -> Vec<Case> {
     let mut cases = suite.cases(options);
     cases.retain(|case| case.name.contains(&options.filter));
     for case in &mut cases {
+        if let (Some(steps @ 1..), Measure::Steps) = (options.steps, case.measure) {
+            case.name = format!("{}, {steps} steps", case.name);
+            case.measure = Measure::Run { steps };
+        }
         case.plans.retain(|plan| options.wants(plan.method));
     }
     cases

@@ -51,7 +51,7 @@ pub(super) fn measure(
     let mut trial = Trial { engine, system, dynamics, device, keeps_lists, seconds, step: 0 };
     let (mut measurement, is_slow) = trial.first_look()?;
     let predicted_seconds = match case.measure {
-        Measure::Series { steps } => measurement.evaluation_seconds * steps as f64,
+        Measure::Series { steps } | Measure::Run { steps } => measurement.evaluation_seconds * steps as f64,
         // A step, and the evaluation before the first.
         Measure::Energy { .. } => 2.0 * measurement.evaluation_seconds,
         Measure::Steps | Measure::Evaluations => 0.0,
@@ -63,6 +63,7 @@ pub(super) fn measure(
     match case.measure {
         Measure::Series { steps } => trial.series(steps, &mut measurement)?,
         Measure::Energy { seconds } => trial.energy(seconds, &mut measurement)?,
+        Measure::Run { steps } => trial.run(steps, &mut measurement)?,
         _ if is_slow => {}
         Measure::Steps => trial.steps(&mut measurement)?,
         Measure::Evaluations => trial.evaluations(&mut measurement)?,

@@ -13,7 +13,19 @@ const MAX_STEPS: u64 = 500;
 /// Steps of a repetition where lists last many: some are to be built in each.
 const LIST_STEPS: u64 = 50;
 
+/// Steps after which all kernels are there.
+const WARM_UP: u64 = 3;
+
 impl Trial<'_> {
+    /// One run.
+    pub(super) fn run(&mut self, steps: u64, measurement: &mut Measurement) -> Result<()> {
+        self.advance(WARM_UP, Quantities::FORCES)?;
+        let (seconds, _) = self.advance(steps, Quantities::FORCES)?;
+        measurement.time = Spread::of(vec![seconds / steps as f64]);
+        measurement.steps = steps;
+        Ok(())
+    }
+
     /// Repetitions of so many steps that each takes a part of the time or less.
     pub(super) fn steps(&mut self, measurement: &mut Measurement) -> Result<()> {
         // The first step after the start evaluates twice, and lists are new.
