@@ -46,6 +46,11 @@ impl<T: Layout> Buffer<T> {
         self.resize(len)
     }
 
+    /// Lengthens it to what there is room for; the content of what it has not held before is arbitrary.
+    pub fn fill_room(&mut self) {
+        self.len = self.capacity;
+    }
+
     /// Number of elements.
     pub fn len(&self) -> usize {
         self.len

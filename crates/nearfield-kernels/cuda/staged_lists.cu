@@ -73,7 +73,7 @@ KERNEL_MIN_BLOCKS(cell_list_stage, StageArgs, WARPS_PER_BLOCK* WARP, 6) {
 
 KERNEL(copy_rows, CopyRowsArgs, 256) {
     const u32 row = thread_index() / ROW_LANES;
-    if (row >= a.n) return;
+    if (row >= a.n || a.control->overflow || a.control->entries > a.room) return;
     const u64 begin = a.offset[row], end = a.offset[row + 1];
     const u32* from = a.staged + a.start[row];
     for (u64 e = begin + threadIdx.x % ROW_LANES; e < end; e += ROW_LANES) a.index[e] = from[e - begin];

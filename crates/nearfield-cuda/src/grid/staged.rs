@@ -51,6 +51,11 @@ pub(super) unsafe fn list(queue: &dyn Queue, grid: &Grid, query: &ListQuery, lis
     // SAFETY: the caller's promise; a count and a start for each row, entries as said.
     unsafe { launch(queue, CELL_LIST_STAGE, candidates.threads(), &stage)? };
     list.scan_rows()?;
+    // Before the host knows how many entries there are, which then need not be waited for: a list has had room for as many
+    // before.
+    list.index.fill_room();
+    let room = list.index.len() as u64;
+    copy_rows(queue, grid.n, list)?;
     let Some(control) = list.staging.control.download()?.pop() else { return Ok(false) };
     list.staging.overflowed = control.overflow != 0;
     if list.staging.overflowed {
@@ -58,17 +63,26 @@ pub(super) unsafe fn list(queue: &dyn Queue, grid: &Grid, query: &ListQuery, lis
         return Ok(false);
     }
     list.make_room(control.entries, false)?;
+    if control.entries > room {
+        copy_rows(queue, grid.n, list)?;
+    }
+    Ok(true)
+}
+
+/// Enqueues the copy of staged rows to their places, where there is room for them.
+fn copy_rows(queue: &dyn Queue, n: usize, list: &DeviceList) -> Result<()> {
     let copy = CopyRowsArgs {
         offset: list.offset.ptr(),
         start: list.staging.start.ptr(),
         staged: list.staging.staged.ptr(),
         index: list.index.ptr(),
-        n: grid.n as u32,
+        control: list.staging.control.ptr(),
+        room: list.index.len() as u64,
+        n: n as u32,
         unused: 0,
     };
-    // SAFETY: rows and entries are as many as were staged.
-    unsafe { launch(queue, COPY_ROWS, (ROW_LANES * grid.n) as u64, &copy)? };
-    Ok(true)
+    // SAFETY: rows are as many as were staged, and nothing is copied where there is no room.
+    unsafe { launch(queue, COPY_ROWS, (ROW_LANES * n) as u64, &copy) }
 }
 
 /// Entries to make room for, where this is expected to do.

@@ -505,12 +505,16 @@ struct CopyRowsArgs {
     u32 *staged;
     // Neighbours, by input index.
     u32 *index;
+    // See [`StageArgs`].
+    StagingControl *control;
+    // Neighbours that there is room for: where there are more, nothing is copied.
+    u64 room;
     // Number of rows.
     u32 n;
     // Zero.
     u32 unused;
 };
-static_assert(sizeof(CopyRowsArgs) == 40, "CopyRowsArgs differs between host and device");
+static_assert(sizeof(CopyRowsArgs) == 56, "CopyRowsArgs differs between host and device");
 
 // Arguments of `query_*`: lists of queries among points of another set.
 struct QueryArgs {

@@ -202,6 +202,10 @@ layouts! {
         pub staged: Ptr<u32>,
         /// Neighbours, by input index.
         pub index: Ptr<u32>,
+        /// See [`StageArgs`].
+        pub control: Ptr<StagingControl>,
+        /// Neighbours that there is room for: where there are more, nothing is copied.
+        pub room: u64,
         /// Number of rows.
         pub n: u32,
         /// Zero.
