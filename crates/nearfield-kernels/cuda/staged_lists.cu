@@ -8,6 +8,9 @@
 // Threads that copy a row.
 #define ROW_LANES 8u
 
+// Entries that each of them has in registers.
+#define COPIED 5u
+
 struct ListStage : CellLister<ListStage> {
     static const bool FILLS = true;
 
@@ -74,7 +77,18 @@ KERNEL_MIN_BLOCKS(cell_list_stage, StageArgs, WARPS_PER_BLOCK* WARP, 6) {
 KERNEL(copy_rows, CopyRowsArgs, 256) {
     const u32 row = thread_index() / ROW_LANES;
     if (row >= a.n || a.control->overflow || a.control->entries > a.room) return;
-    const u64 begin = a.offset[row], end = a.offset[row + 1];
+    const u64 begin = a.offset[row];
+    const u32 count = (u32)(a.offset[row + 1] - begin);
     const u32* from = a.staged + a.start[row];
-    for (u64 e = begin + threadIdx.x % ROW_LANES; e < end; e += ROW_LANES) a.index[e] = from[e - begin];
+    u32* to = a.index + begin;
+    // Several loads are on their way at a time.
+    for (u32 e = threadIdx.x % ROW_LANES; e < count; e += COPIED * ROW_LANES) {
+        u32 part[COPIED];
+#pragma unroll
+        for (u32 q = 0; q < COPIED; ++q) part[q] = e + q * ROW_LANES < count ? from[e + q * ROW_LANES] : 0;
+#pragma unroll
+        for (u32 q = 0; q < COPIED; ++q) {
+            if (e + q * ROW_LANES < count) to[e + q * ROW_LANES] = part[q];
+        }
+    }
 }
