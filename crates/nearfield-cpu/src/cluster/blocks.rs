@@ -1,6 +1,6 @@
 //! Particles in blocks of eight, sorted in space.
 
-use super::{BLOCK, Moving, motion::Motion, padding};
+use super::{BLOCK, Keeping, Moving, motion::Motion, padding};
 use crate::{Grid, Structure, parallel::Scattered, physics::Physics};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -22,7 +22,7 @@ pub(super) struct Blocks {
     pub kind: Vec<[u32; BLOCK]>,
     /// Periods crossed by each particle since the list was built, as small whole numbers.
     pub crossings: Vec<Octet>,
-    /// Whether any particle of a block has crossed.
+    /// Whether any particle of a block has crossed, or had when the inner list was made.
     pub crossed: Vec<bool>,
     /// What each particle may move before the inner list must be pruned.
     pub budget: Vec<[f32; BLOCK]>,
@@ -86,7 +86,7 @@ impl Blocks {
     }
 
     /// Fills the blocks with particles in the order of [`Blocks::sort`].
-    pub fn fill(&mut self, grid: &Grid, physics: &Physics, moving: Moving, skin: f32) {
+    pub fn fill(&mut self, grid: &Grid, physics: &Physics, moving: Moving, keeping: Keeping) {
         let lengths = physics.sim_box.lengths();
         self.period = std::array::from_fn(|a| if physics.sim_box.is_periodic(a) { lengths[a] } else { 0.0 });
         self.cutoff = physics.cutoff();
@@ -134,10 +134,10 @@ impl Blocks {
             extent
         });
         let extent = extent.reduce(|| 0.0, f32::max);
-        self.extent = self.period.into_iter().fold(extent, f32::max) + extent + self.cutoff + skin;
+        self.extent = self.period.into_iter().fold(extent, f32::max) + extent + keeping.reach(self.cutoff);
         self.crossings.par_iter_mut().with_min_len(4096).for_each(|c| *c = Octet::default());
         self.crossed.fill(false);
-        self.begin_motion(moving, skin);
+        self.begin_motion(moving, keeping);
     }
 
     /// Bytes held.

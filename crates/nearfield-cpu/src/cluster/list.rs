@@ -140,14 +140,23 @@ impl PairList {
         bytes.into_inner() <= budget
     }
 
-    /// Takes from the outer lists what may come within the cutoff while particles keep to their budgets.
-    pub fn prune(&mut self, blocks: &Blocks) {
-        self.tasks.par_iter_mut().with_max_len(1).for_each(|task| super::isa().run(Prune { blocks, task }));
+    /// Takes from the outer lists what may come within the cutoff while particles keep to their budgets, or what is within
+    /// one `reach` of where they are expected.
+    pub fn prune(&mut self, blocks: &Blocks, reach: Option<f32>) {
+        self.tasks.par_iter_mut().with_max_len(1).for_each(|task| match reach {
+            None => super::isa().run(Prune::<true> { blocks, reach: blocks.cutoff, task }),
+            Some(reach) => super::isa().run(Prune::<false> { blocks, reach, task }),
+        });
     }
 
     /// Pairs of clusters and blocks in the outer lists.
     pub fn entries(&self) -> u64 {
         self.tasks.iter().map(|task| task.outer.blocks.len() as u64).sum()
+    }
+
+    /// Pairs of clusters and blocks in the inner lists.
+    pub fn entries_of_inner(&self) -> u64 {
+        self.tasks.iter().map(|task| task.inner.segments.last().map_or(0, |last| u64::from(last.end))).sum()
     }
 
     /// Takes the outer lists as they are for the inner ones, for a single use.
@@ -311,18 +320,21 @@ fn bounds(blocks: &Blocks, b: usize, radius: f32) -> GroupBox {
     GroupBox { lo, hi, radius }
 }
 
-struct Prune<'a> {
+/// Keeps what is within `reach`, and where there are `BUDGETS` those of both particles.
+struct Prune<'a, const BUDGETS: bool> {
     blocks: &'a Blocks,
+    reach: f32,
     task: &'a mut Task,
 }
 
-impl lanes::Kernel for Prune<'_> {
+impl<const BUDGETS: bool> lanes::Kernel for Prune<'_, BUDGETS> {
     type Output = ();
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
-        let Self { blocks, task } = self;
+        let Self { blocks, reach, task } = self;
         let midway = &blocks.midway_of_inner[..];
+        let fixed = lanes.splat(conservative_range(reach, blocks.extent).powi(2));
         let Task { outer, inner, .. } = task;
         inner.segments.clear();
         // What is beyond the last segment is left over.
@@ -333,7 +345,7 @@ impl lanes::Kernel for Prune<'_> {
             let (block, at) = (cluster / 2, cluster % 2 * quad::CLUSTER);
             let quad = (Quad::new(lanes, blocks, cluster, segment.image), quad::position(lanes, midway, cluster));
             let budget = &blocks.budget[block];
-            let range = |lane: usize| conservative_range(blocks.cutoff + budget[at + lane], blocks.extent);
+            let range = |lane: usize| conservative_range(reach + budget[at + lane], blocks.extent);
             let ranges = [lanes.halves(range(0), range(1)), lanes.halves(range(2), range(3))];
             let with_images = segment.image != [0; 3] || blocks.crossed[block];
             let start = end;
@@ -341,9 +353,12 @@ impl lanes::Kernel for Prune<'_> {
                 let b = j as usize;
                 let own = segment.own && b == block;
                 let pairs = if own { own_pairs(cluster) } else { [u16::MAX; VECTORS] };
-                let theirs = lanes.twice(&blocks.budget[b]);
-                let reach = [lanes.add(ranges[0], theirs), lanes.add(ranges[1], theirs)];
-                let reach2 = [lanes.mul(reach[0], reach[0]), lanes.mul(reach[1], reach[1])];
+                let mut reach2 = [fixed; VECTORS];
+                if BUDGETS {
+                    let theirs = lanes.twice(&blocks.budget[b]);
+                    let reach = [lanes.add(ranges[0], theirs), lanes.add(ranges[1], theirs)];
+                    reach2 = [lanes.mul(reach[0], reach[0]), lanes.mul(reach[1], reach[1])];
+                }
                 let near = if with_images || blocks.crossed[b] {
                     any_within::<L, true>(lanes, blocks, midway, &quad, b, reach2, pairs)
                 } else {
