@@ -136,7 +136,7 @@ mod tests {
     #[test]
     fn the_skin_of_the_user_is_kept_and_tells_how_long_lists_serve() {
         let [thin, thick] = [0.2, 0.6].map(|skin| chosen(0.001, Some(skin)).unwrap());
-        assert_eq!((thin.outer_reach, thick.outer_reach), (2.7, 3.1));
+        assert_eq!((thin.outer_reach, thick.outer_reach), (2.7, 3.1), "{thin:?} {thick:?}");
         assert!(thin.rebuild_every < thick.rebuild_every, "{thin:?} {thick:?}");
         assert_eq!(chosen(0.001, Some(0.0)), None);
     }

@@ -8,6 +8,9 @@ use std::ops::Range;
 /// Blocks that a task of a pass over particles handles.
 pub(super) const PAGE: usize = 64;
 
+/// Budget of padding, which does not move: more than it needs, with a finite square.
+pub(super) const UNMOVED: f32 = 1e18;
+
 /// Eight vectors, an array for each component.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C, align(32))]
@@ -107,7 +110,7 @@ impl Blocks {
         }
         // Padding does not move.
         self.budget.clear();
-        self.budget.resize(n, [f32::INFINITY; BLOCK]);
+        self.budget.resize(n, [UNMOVED; BLOCK]);
         self.crossed.resize(n, false);
         self.kind.clear();
         if !moving.kind.is_empty() {

@@ -8,7 +8,7 @@
 
 use super::{
     BLOCK, Keeping, Moving,
-    blocks::{Blocks, Octet, PAGE},
+    blocks::{Blocks, Octet, PAGE, UNMOVED},
 };
 use crate::lanes;
 use nearfield_core::{predicate::conservative_range, skin::ListIntervals};
@@ -254,7 +254,7 @@ impl lanes::Kernel for Plan<'_> {
                 let here = if wanted_here < left_here { wanted_here } else { left_here };
                 let here = if here > 0.0 { here } else { 0.0 };
                 let budget = if expected { wanted } else { here };
-                self.budget[k][lane] = if lane < n { budget } else { f32::INFINITY };
+                self.budget[k][lane] = if lane < n { budget } else { UNMOVED };
                 let lacks = !expected & (left_here < LEAST_BUDGET * wanted_here) & (lane < n);
                 short |= u32::from(lacks);
             }
