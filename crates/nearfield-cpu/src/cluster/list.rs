@@ -279,9 +279,15 @@ fn find_near<L: Lanes, const IMAGES: bool>(
     for j in run {
         first[ends[0]] = j;
         second[ends[1]] = j;
+        let at = twice(lanes, &blocks.midway[j as usize]);
         for half in 0..2 {
-            let pairs = if j == b { own_pairs(half) } else { [u16::MAX; VECTORS] };
-            let near = any_within::<L, IMAGES>(lanes, blocks, &blocks.midway, &quads[half], j as usize, reach2, pairs);
+            let near = if j == b {
+                let pairs = own_pairs(half);
+                any_within::<L, IMAGES>(lanes, blocks, &blocks.midway, &quads[half], j as usize, reach2, pairs)
+            } else {
+                let [first, second] = squared_lengths::<L, IMAGES>(lanes, blocks, &quads[half], j as usize, at);
+                lanes.lt(lanes.min(first, second), reach2[0]) != 0
+            };
             ends[half] += usize::from(near);
         }
     }
@@ -373,7 +379,6 @@ impl<const BUDGETS: bool> lanes::Kernel for Prune<'_, BUDGETS> {
                     let reach = [lanes.add(ranges[0], theirs), lanes.add(ranges[1], theirs)];
                     reach2 = [lanes.mul(reach[0], reach[0]), lanes.mul(reach[1], reach[1])];
                 }
-                // No other image of itself is near, and nobody has crossed towards another of its own block.
                 let near = any_within::<L, true>(lanes, blocks, midway, &quad, block, reach2, own_pairs(cluster));
                 kept[end] = own;
                 end += usize::from(near);
