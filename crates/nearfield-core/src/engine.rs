@@ -3,8 +3,9 @@
 //! State stays on the device between calls. Inner loops are monomorphic behind this boundary.
 
 use crate::{
-    Dynamics, ListRequest, NeighborList, Particles, Plan, Result, System, Vec3s, maintenance::EnergyCounter,
-    skin::LearnedSkin,
+    Dynamics, ListRequest, NeighborList, Particles, Plan, Result, System, Vec3s,
+    maintenance::EnergyCounter,
+    skin::{LearnedSkin, ListIntervals},
 };
 use serde::{Deserialize, Serialize};
 
@@ -80,6 +81,9 @@ pub struct Report {
     pub dangerous_builds: u64,
     /// Skin of the last list, \[length\]; zero without lists.
     pub skin: f32,
+    /// How the last list was kept, where a tolerance allows lists to miss pairs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tolerant_lists: Option<ListIntervals>,
     /// Evaluations whose list did not fit the memory budget and was processed in batches.
     pub batched_evaluations: u64,
     /// Seconds spent building structures.
@@ -117,6 +121,7 @@ impl Report {
             list_builds: self.list_builds + later.list_builds,
             dangerous_builds: self.dangerous_builds + later.dangerous_builds,
             skin: if later.list_builds > 0 { later.skin } else { self.skin },
+            tolerant_lists: later.tolerant_lists.or(self.tolerant_lists),
             batched_evaluations: self.batched_evaluations + later.batched_evaluations,
             build_seconds: self.build_seconds + later.build_seconds,
             refit_seconds: self.refit_seconds + later.refit_seconds,

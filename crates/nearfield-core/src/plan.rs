@@ -118,6 +118,10 @@ pub struct Plan {
     pub maintenance: Maintenance,
     /// Verlet skin of list methods.
     pub skin: Skin,
+    /// Greatest drift of the energy that pairs missed by a stored list may be expected to cause, for each particle and unit
+    /// of time; 0 where no list may miss any. Only `cluster` on a CPU makes use of it: others miss none.
+    #[serde(default)]
+    pub list_tolerance: f64,
     /// Sum forces independently of order, so that results are bitwise equal across methods and thread counts.
     /// BVH methods always do; `cell` and `brute` are faster without.
     pub deterministic: bool,
@@ -134,6 +138,7 @@ impl Plan {
             order: Order::Morton,
             maintenance: Maintenance::Gradient,
             skin: Skin::Auto,
+            list_tolerance: 0.0,
             deterministic: false,
             memory_budget: 4 << 30,
         }

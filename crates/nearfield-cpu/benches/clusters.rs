@@ -1,8 +1,8 @@
 //! Where the time of `cluster` goes: whole steps of the Lennard-Jones melt by phase, and evaluations where particles
 //! have very many neighbours or next to none.
 //!
-//! `cargo bench -p nearfield-cpu --bench clusters [-- [METHOD:]N[:rR][:SKIN] ...]`, SKIN a number or `auto`. One line of
-//! JSON for each case. Threads: RAYON_NUM_THREADS.
+//! `cargo bench -p nearfield-cpu --bench clusters [-- [METHOD:]N[:rR][:SKIN][:tD] ...]`, SKIN a number or `auto`, D the
+//! tolerance of lists. One line of JSON for each case. Threads: RAYON_NUM_THREADS.
 //! - `N`, `N:SKIN`: the melt, density 0.8442, cutoff 2.5, dt 0.005, after 200 steps of melting from T = 1.44; the default is
 //!   `auto`.
 //! - `N:rR:SKIN`: as paper A's disordered particles, one to a cube of 10 with walls, cutoff R, moving at T = 1 by steps of
@@ -32,6 +32,7 @@ fn main() {
             match part.parse() {
                 Ok(method) => plan.method = method,
                 Err(_) if part == "auto" => skin = Some(Skin::Auto),
+                Err(_) if part.starts_with('t') => plan.list_tolerance = part[1..].parse().expect("a tolerance"),
                 Err(_) if part.starts_with('r') => cutoff = Some(part[1..].to_owned()),
                 Err(_) if n.is_none() => n = Some(part.parse().expect("a number of particles")),
                 Err(_) => skin = Some(Skin::Fixed(part.parse().expect("a skin"))),
@@ -165,7 +166,7 @@ fn run(system: System, dynamics: Dynamics, plan: &Plan) {
     println!(
         "{{\"method\": \"{}\", \"n\": {n}, \"skin\": {}, \"cutoff\": {}, \"ns\": {:.1}, \"build\": {:.1}, \"refresh_and_prune\": {:.1}, \
          \"query\": {:.1}, \"integrate\": {:.1}, \"million_per_second\": {:.1}, \"steps_per_list\": {:.1}, \
-         \"dangerous\": {}, \"temperature\": {:.4}, \"bytes_per_particle\": {:.0}}}",
+         \"dangerous\": {}, \"lists\": {}, \"temperature\": {:.4}, \"bytes_per_particle\": {:.0}}}",
         plan.method,
         report.skin,
         system.radii.largest(),
@@ -177,6 +178,7 @@ fn run(system: System, dynamics: Dynamics, plan: &Plan) {
         1e3 / median(0),
         report.steps_per_list().unwrap_or_default(),
         report.dangerous_builds,
+        report.tolerant_lists.map_or("null".into(), |lists| format!("\"{lists:?}\"")),
         totals.kinetic_energy * 2.0 / (3.0 * n as f64),
         report.bytes as f64 / n as f64,
     );

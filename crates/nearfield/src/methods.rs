@@ -20,6 +20,8 @@ pub struct MethodSupport {
     pub bvh: bool,
     /// Whether `skin` applies.
     pub list: bool,
+    /// Whether `list_tolerance` applies; without, lists miss no pair.
+    pub list_tolerance: bool,
 }
 
 /// Names of the devices that have the methods, without numbers.
@@ -52,5 +54,6 @@ fn support(method: Method, device: &'static str) -> MethodSupport {
         variable_radii: method.supports_variable_radii(),
         bvh: method.uses_bvh(),
         list: method.uses_list(),
+        list_tolerance: method == Method::Cluster && device == "cpu",
     }
 }

@@ -247,6 +247,10 @@ fn values_out_of_range_name_key_line_and_reason() {
             "line 5: interaction.type.1.mass = -1: must be positive and finite",
         ),
         ("[interaction]\ntype = []", "line 2: interaction.type = []: at least one type is needed"),
+        (
+            "[method]\nlist_tolerance = -1.0",
+            "line 2: method.list_tolerance = -1: must be zero (lists miss no pair) or positive",
+        ),
         ("[method]\nskin = -1.0", "line 2: method.skin = -1: must be zero (a list each step) or positive"),
         ("[output]\nrdf_bins = 0", "line 2: output.rdf_bins = 0: at least one bin is needed"),
         ("[system.generate]\ndensity = 1.0\nn = 0", "line 3: system.generate.n = 0: at least one particle is needed"),

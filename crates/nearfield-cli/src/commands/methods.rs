@@ -21,6 +21,9 @@ pub fn run(json: bool) -> Result<(), Failure> {
         if m.list {
             settings.extend(["skin", "memory_budget"]);
         }
+        if m.list_tolerance {
+            settings.push("list_tolerance");
+        }
         let settings = settings.join(", ");
         print_line(&format!(
             "{:<10} {:<6} {:<32} {:<18} {yes_no:<15} {settings}",

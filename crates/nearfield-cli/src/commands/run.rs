@@ -51,10 +51,23 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
         }
         if let Some(steps) = record.steps_per_list {
             let how = match record.plan.skin {
+                Skin::Auto if record.report.tolerant_lists.is_some() => "chosen by what lists may miss",
                 Skin::Auto => "chosen from what the lists before cost and how long they served",
                 Skin::Fixed(_) => "chosen by the user",
             };
             print_note(&format!("skin {:.3}: {how}; a list served {steps:.1} steps", record.report.skin));
+        }
+        if let Some(lists) = record.report.tolerant_lists {
+            print_note(&format!(
+                "lists that may miss pairs: reach {:.3} for {} steps, pruned to {:.3} for {}; expected drift of energy {:.1e} \
+                 per particle and time, of {:.1e} allowed",
+                lists.outer_reach,
+                lists.rebuild_every,
+                lists.inner_reach,
+                lists.prune_every,
+                lists.expected_drift,
+                record.plan.list_tolerance
+            ));
         }
     } else if record.method.reason != first.reason {
         print_note(&format!("method {}: {}", record.method.method, record.method.reason));

@@ -179,6 +179,28 @@ fn the_skin_is_chosen_and_reported() {
 }
 
 #[test]
+fn lists_that_may_miss_pairs_are_reported_and_others_are_stricter() {
+    let folder = Folder::new();
+    folder.write("melt.toml", MELT);
+    let line = "run melt.toml --device cpu --steps 200 --explain --set method.list_tolerance=0.01";
+    let outcome = folder.succeed(&format!("{line} --method cluster --output loose"));
+    assert!(outcome.stderr.contains("lists that may miss pairs: reach "), "{}", outcome.stderr);
+    let record = folder.json("loose/run.json");
+    let lists = &record["report"]["tolerant_lists"];
+    assert!(lists["prune_every"].as_u64().unwrap() > 1, "{lists}");
+    assert!(lists["rebuild_every"].as_u64() >= lists["prune_every"].as_u64(), "{lists}");
+    assert!(lists["outer_reach"].as_f64().unwrap() >= lists["inner_reach"].as_f64().unwrap(), "{lists}");
+    assert!((0.0..=0.01).contains(&lists["expected_drift"].as_f64().unwrap()), "{lists}");
+    for (case, output) in [("--method cell", "cell"), ("--method cluster --set method.deterministic=true", "exact")] {
+        let outcome = folder.succeed(&format!("{line} {case} --output {output}"));
+        assert!(!outcome.stderr.contains("may miss pairs"), "{}", outcome.stderr);
+        let record = folder.json(&format!("{output}/run.json"));
+        assert_eq!(record["plan"]["list_tolerance"], 0.01);
+        assert!(record["report"]["tolerant_lists"].is_null());
+    }
+}
+
+#[test]
 fn every_example_runs() {
     let folder = Folder::new();
     let examples = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples");

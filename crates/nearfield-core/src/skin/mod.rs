@@ -1,8 +1,12 @@
-//! The margin of stored neighbour lists: a number, or chosen while a simulation runs.
+//! The margin of stored neighbour lists: a number, chosen while a simulation runs, or by what lists may miss.
 
+mod intervals;
+mod missed;
 mod power_law;
 mod tuner;
 
+pub use intervals::{Limits, ListCosts, ListIntervals};
+pub use missed::{CutoffEdge, ListSize, Missed};
 pub use tuner::{LearnedSkin, ListUse, SkinTuner};
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};

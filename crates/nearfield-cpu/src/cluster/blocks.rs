@@ -1,12 +1,15 @@
 //! Particles in blocks of eight, sorted in space.
 
-use super::{BLOCK, Moving, motion::Motion, padding};
+use super::{BLOCK, Keeping, Moving, motion::Motion, padding};
 use crate::{Grid, Structure, parallel::Scattered, physics::Physics};
 use rayon::prelude::*;
 use std::ops::Range;
 
 /// Blocks that a task of a pass over particles handles.
 pub(super) const PAGE: usize = 64;
+
+/// Budget of padding, which does not move: more than it needs, with a finite square.
+pub(super) const UNMOVED: f32 = 1e18;
 
 /// Eight vectors, an array for each component.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -22,7 +25,7 @@ pub(super) struct Blocks {
     pub kind: Vec<[u32; BLOCK]>,
     /// Periods crossed by each particle since the list was built, as small whole numbers.
     pub crossings: Vec<Octet>,
-    /// Whether any particle of a block has crossed.
+    /// Whether any particle of a block has crossed, or had when the inner list was made.
     pub crossed: Vec<bool>,
     /// What each particle may move before the inner list must be pruned.
     pub budget: Vec<[f32; BLOCK]>,
@@ -86,7 +89,7 @@ impl Blocks {
     }
 
     /// Fills the blocks with particles in the order of [`Blocks::sort`].
-    pub fn fill(&mut self, grid: &Grid, physics: &Physics, moving: Moving, skin: f32) {
+    pub fn fill(&mut self, grid: &Grid, physics: &Physics, moving: Moving, keeping: Keeping) {
         let lengths = physics.sim_box.lengths();
         self.period = std::array::from_fn(|a| if physics.sim_box.is_periodic(a) { lengths[a] } else { 0.0 });
         self.cutoff = physics.cutoff();
@@ -107,7 +110,7 @@ impl Blocks {
         }
         // Padding does not move.
         self.budget.clear();
-        self.budget.resize(n, [f32::INFINITY; BLOCK]);
+        self.budget.resize(n, [UNMOVED; BLOCK]);
         self.crossed.resize(n, false);
         self.kind.clear();
         if !moving.kind.is_empty() {
@@ -134,10 +137,10 @@ impl Blocks {
             extent
         });
         let extent = extent.reduce(|| 0.0, f32::max);
-        self.extent = self.period.into_iter().fold(extent, f32::max) + extent + self.cutoff + skin;
+        self.extent = self.period.into_iter().fold(extent, f32::max) + extent + keeping.reach(self.cutoff);
         self.crossings.par_iter_mut().with_min_len(4096).for_each(|c| *c = Octet::default());
         self.crossed.fill(false);
-        self.begin_motion(moving, skin);
+        self.begin_motion(moving, keeping);
     }
 
     /// Bytes held.

@@ -140,14 +140,23 @@ impl PairList {
         bytes.into_inner() <= budget
     }
 
-    /// Takes from the outer lists what may come within the cutoff while particles keep to their budgets.
-    pub fn prune(&mut self, blocks: &Blocks) {
-        self.tasks.par_iter_mut().with_max_len(1).for_each(|task| super::isa().run(Prune { blocks, task }));
+    /// Takes from the outer lists what may come within the cutoff while particles keep to their budgets, or what is within
+    /// one `reach` of where they are expected.
+    pub fn prune(&mut self, blocks: &Blocks, reach: Option<f32>) {
+        self.tasks.par_iter_mut().with_max_len(1).for_each(|task| match reach {
+            None => super::isa().run(Prune::<true> { blocks, reach: blocks.cutoff, task }),
+            Some(reach) => super::isa().run(Prune::<false> { blocks, reach, task }),
+        });
     }
 
     /// Pairs of clusters and blocks in the outer lists.
     pub fn entries(&self) -> u64 {
         self.tasks.iter().map(|task| task.outer.blocks.len() as u64).sum()
+    }
+
+    /// Pairs of clusters and blocks in the inner lists.
+    pub fn entries_of_inner(&self) -> u64 {
+        self.tasks.iter().map(|task| task.inner.segments.last().map_or(0, |last| u64::from(last.end))).sum()
     }
 
     /// Takes the outer lists as they are for the inner ones, for a single use.
@@ -270,9 +279,15 @@ fn find_near<L: Lanes, const IMAGES: bool>(
     for j in run {
         first[ends[0]] = j;
         second[ends[1]] = j;
+        let at = twice(lanes, &blocks.midway[j as usize]);
         for half in 0..2 {
-            let pairs = if j == b { own_pairs(half) } else { [u16::MAX; VECTORS] };
-            let near = any_within::<L, IMAGES>(lanes, blocks, &blocks.midway, &quads[half], j as usize, reach2, pairs);
+            let near = if j == b {
+                let pairs = own_pairs(half);
+                any_within::<L, IMAGES>(lanes, blocks, &blocks.midway, &quads[half], j as usize, reach2, pairs)
+            } else {
+                let [first, second] = squared_lengths::<L, IMAGES>(lanes, blocks, &quads[half], j as usize, at);
+                lanes.lt(lanes.min(first, second), reach2[0]) != 0
+            };
             ends[half] += usize::from(near);
         }
     }
@@ -286,16 +301,28 @@ fn any_within<L: Lanes, const IMAGES: bool>(
     lanes: L,
     blocks: &Blocks,
     position: &[Octet],
-    (quad, own): &(Quad<L>, Position<L>),
+    of: &(Quad<L>, Position<L>),
     j: usize,
     reach2: [L::F; VECTORS],
     pairs: [u16; VECTORS],
 ) -> bool {
-    let at = twice(lanes, &position[j]);
+    let [first, second] = squared_lengths::<L, IMAGES>(lanes, blocks, of, j, twice(lanes, &position[j]));
+    (lanes.lt(first, reach2[0]) & pairs[0]) | (lanes.lt(second, reach2[1]) & pairs[1]) != 0
+}
+
+/// Squared distances of a cluster and the particles of block `j`, which are `at`.
+#[inline(always)]
+fn squared_lengths<L: Lanes, const IMAGES: bool>(
+    lanes: L,
+    blocks: &Blocks,
+    (quad, own): &(Quad<L>, Position<L>),
+    j: usize,
+    at: [L::F; 3],
+) -> [L::F; VECTORS] {
     let shifts = if IMAGES { quad.shifts(lanes, blocks, j) } else { [at; VECTORS] };
     let first = squared_length(lanes, displacement::<L, IMAGES>(lanes, &own[0], at, &shifts[0]));
     let second = squared_length(lanes, displacement::<L, IMAGES>(lanes, &own[1], at, &shifts[1]));
-    (lanes.lt(first, reach2[0]) & pairs[0]) | (lanes.lt(second, reach2[1]) & pairs[1]) != 0
+    [first, second]
 }
 
 /// The box around the particles of block `b` where they are expected.
@@ -311,18 +338,25 @@ fn bounds(blocks: &Blocks, b: usize, radius: f32) -> GroupBox {
     GroupBox { lo, hi, radius }
 }
 
-struct Prune<'a> {
+/// Keeps what is within `reach`, and where there are `BUDGETS` those of both particles.
+struct Prune<'a, const BUDGETS: bool> {
     blocks: &'a Blocks,
+    reach: f32,
     task: &'a mut Task,
 }
 
-impl lanes::Kernel for Prune<'_> {
+impl<const BUDGETS: bool> lanes::Kernel for Prune<'_, BUDGETS> {
     type Output = ();
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
-        let Self { blocks, task } = self;
-        let midway = &blocks.midway_of_inner[..];
+        let Self { blocks, reach, task } = self;
+        // Slices of one length need but one test of an index.
+        let n = blocks.len();
+        let midway = &blocks.midway_of_inner[..n];
+        let crossed = &blocks.crossed[..n];
+        let budget = &blocks.budget[..n];
+        let fixed = lanes.splat(conservative_range(reach, blocks.extent).powi(2));
         let Task { outer, inner, .. } = task;
         inner.segments.clear();
         // What is beyond the last segment is left over.
@@ -332,26 +366,44 @@ impl lanes::Kernel for Prune<'_> {
             let cluster = segment.cluster as usize;
             let (block, at) = (cluster / 2, cluster % 2 * quad::CLUSTER);
             let quad = (Quad::new(lanes, blocks, cluster, segment.image), quad::position(lanes, midway, cluster));
-            let budget = &blocks.budget[block];
-            let range = |lane: usize| conservative_range(blocks.cutoff + budget[at + lane], blocks.extent);
+            let range = |lane: usize| conservative_range(reach + budget[block][at + lane], blocks.extent);
             let ranges = [lanes.halves(range(0), range(1)), lanes.halves(range(2), range(3))];
-            let with_images = segment.image != [0; 3] || blocks.crossed[block];
+            let with_images = segment.image != [0; 3] || crossed[block];
+            let kept = &mut inner.blocks[..];
+            let mut listed = &outer.blocks[segment.start as usize..segment.end as usize];
             let start = end;
-            for &j in &outer.blocks[segment.start as usize..segment.end as usize] {
+            if let (true, Some((&own, others))) = (segment.own, listed.split_first()) {
+                let mut reach2 = [fixed; VECTORS];
+                if BUDGETS {
+                    let theirs = lanes.twice(&budget[block]);
+                    let reach = [lanes.add(ranges[0], theirs), lanes.add(ranges[1], theirs)];
+                    reach2 = [lanes.mul(reach[0], reach[0]), lanes.mul(reach[1], reach[1])];
+                }
+                let near = any_within::<L, true>(lanes, blocks, midway, &quad, block, reach2, own_pairs(cluster));
+                kept[end] = own;
+                end += usize::from(near);
+                listed = others;
+            }
+            for &j in listed {
                 let b = j as usize;
-                let own = segment.own && b == block;
-                let pairs = if own { own_pairs(cluster) } else { [u16::MAX; VECTORS] };
-                let theirs = lanes.twice(&blocks.budget[b]);
-                let reach = [lanes.add(ranges[0], theirs), lanes.add(ranges[1], theirs)];
-                let reach2 = [lanes.mul(reach[0], reach[0]), lanes.mul(reach[1], reach[1])];
-                let near = if with_images || blocks.crossed[b] {
-                    any_within::<L, true>(lanes, blocks, midway, &quad, b, reach2, pairs)
+                let at = twice(lanes, &midway[b]);
+                let r2 = if with_images || crossed[b] {
+                    squared_lengths::<L, true>(lanes, blocks, &quad, b, at)
                 } else {
-                    any_within::<L, false>(lanes, blocks, midway, &quad, b, reach2, pairs)
+                    squared_lengths::<L, false>(lanes, blocks, &quad, b, at)
+                };
+                // One compare of a vector for the two of a cluster.
+                let near = if BUDGETS {
+                    let theirs = lanes.twice(&budget[b]);
+                    let reach = [lanes.add(ranges[0], theirs), lanes.add(ranges[1], theirs)];
+                    let spare = [lanes.mul_sub(reach[0], reach[0], r2[0]), lanes.mul_sub(reach[1], reach[1], r2[1])];
+                    lanes.lt(lanes.splat(0.0), lanes.max(spare[0], spare[1]))
+                } else {
+                    lanes.lt(lanes.min(r2[0], r2[1]), fixed)
                 };
                 // Written and then kept or not: a branch would be foretold wrongly half of the time.
-                inner.blocks[end] = j;
-                end += usize::from(near);
+                kept[end] = j;
+                end += usize::from(near != 0);
             }
             inner.close(segment.cluster, segment.image, start, end);
         }

@@ -12,6 +12,9 @@
 //! while their distance exceeds the cutoff by less than both budgets, and the list is pruned anew when some particle
 //! has used its budget up. Displacements are measured before each use, so no pair is missed.
 //!
+//! Or both lists serve for a number of steps ([`Keeping::Tolerant`]), chosen so that what pairs they miss does no more than
+//! a tolerance allows ([`nearfield_core::skin::Missed`]).
+//!
 //! Where particles have very many neighbours no list is stored: the pairs of a few clusters at a time are listed and
 //! computed while they are in the cache ([`Clusters::build_without_list`]).
 //!
@@ -33,7 +36,8 @@ mod tests;
 use crate::{Grid, Slots, lanes::Isa, physics::Physics};
 use blocks::Blocks;
 use list::{PairList, Reach, TASKS_PER_THREAD};
-use nearfield_core::{Truncation, potentials::Potential};
+use motion::Due;
+use nearfield_core::{Truncation, potentials::Potential, skin::ListIntervals};
 use std::ops::Range;
 pub(crate) use sums::Output;
 
@@ -66,11 +70,36 @@ pub(crate) struct Clusters {
     kept: Option<bool>,
 }
 
+/// How a list is kept.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Keeping {
+    /// While it misses no pair. `skin` is the sum of what two particles may move before it is outrun; without any it is
+    /// good for one evaluation.
+    Strict { skin: f32 },
+    /// For a number of steps.
+    Tolerant(ListIntervals),
+}
+
+impl Keeping {
+    /// For one evaluation.
+    const ONCE: Self = Self::Strict { skin: 0.0 };
+
+    /// How far the list reaches.
+    pub fn reach(self, cutoff: f32) -> f32 {
+        match self {
+            Self::Strict { skin } => cutoff + skin,
+            Self::Tolerant(lists) => lists.outer_reach,
+        }
+    }
+}
+
 /// The work a list has made.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Counts {
     /// Pairs of clusters and blocks.
     pub entries: u64,
+    /// Those that were left by the last pruning.
+    pub entries_of_inner: u64,
     pub prunings: u64,
 }
 
@@ -87,23 +116,27 @@ pub(crate) fn has_vector_law(physics: &Physics) -> bool {
 }
 
 impl Clusters {
-    /// Takes the present positions. Whether the list still holds every pair; otherwise it must be built.
-    pub fn refresh(&mut self, moving: Moving) -> bool {
+    /// Takes the present positions. Whether the list still serves; otherwise it must be built. One that serves for a number
+    /// of steps is not pruned once more unless particles are `calm`, as slow as was thought.
+    pub fn refresh(&mut self, moving: Moving, calm: impl FnOnce() -> bool) -> bool {
         let kept = self.kept.take();
         if !self.valid {
             return false;
         }
-        if !kept.unwrap_or_else(|| self.blocks.refresh(moving.position)) {
-            self.valid = self.blocks.plan_motion(moving);
-            if self.valid {
-                self.prune();
-            }
+        let kept = kept.unwrap_or_else(|| self.blocks.refresh(moving.position));
+        match self.blocks.motion.due(kept) {
+            Due::Nothing => return true,
+            Due::Pruning => self.valid = calm() && self.blocks.plan_motion(moving),
+            Due::Building => self.valid = false,
+        }
+        if self.valid {
+            self.prune();
         }
         self.valid
     }
 
     fn prune(&mut self) {
-        self.list.prune(&self.blocks);
+        self.list.prune(&self.blocks, self.blocks.motion.inner_reach());
         self.prunings += 1;
         if self.is_sparse() {
             self.sums.lay_out(&mut self.list, &self.blocks, Reach::Inner);
@@ -117,7 +150,8 @@ impl Clusters {
 
     /// What the list holds and how often it was pruned.
     pub fn counts(&self) -> Counts {
-        Counts { entries: self.list.entries(), prunings: self.prunings }
+        let Self { list, prunings, .. } = self;
+        Counts { entries: list.entries(), entries_of_inner: list.entries_of_inner(), prunings: *prunings }
     }
 
     /// The order of particles in which blocks are contiguous: place k is for particle `order[k]` of the grid's input.
@@ -125,13 +159,12 @@ impl Clusters {
         self.blocks.sort(grid)
     }
 
-    /// Builds blocks and list, for particles in [`Clusters::order`]. `skin` is the sum of what two particles may move
-    /// before the list is outrun; without any it is good for one evaluation. False when the list would take more than
-    /// `budget` bytes: there is none then.
-    pub fn build(&mut self, grid: &Grid, physics: &Physics, moving: Moving, skin: f32, budget: u64) -> bool {
-        self.blocks.fill(grid, physics, moving, skin);
-        let listed = self.list.build(grid, &self.blocks, physics.cutoff() + skin, budget);
-        self.valid = listed && skin > 0.0;
+    /// Builds blocks and list, for particles in [`Clusters::order`]. False when the list would take more than `budget` bytes:
+    /// there is none then.
+    pub fn build(&mut self, grid: &Grid, physics: &Physics, moving: Moving, keeping: Keeping, budget: u64) -> bool {
+        self.blocks.fill(grid, physics, moving, keeping);
+        let listed = self.list.build(grid, &self.blocks, keeping.reach(physics.cutoff()), budget);
+        self.valid = listed && !matches!(keeping, Keeping::Strict { skin: 0.0 });
         if listed && !(self.valid && self.is_sparse()) {
             self.sums.lay_out(&mut self.list, &self.blocks, Reach::Outer);
         }
@@ -148,7 +181,7 @@ impl Clusters {
     /// Builds blocks without a list, for particles in [`Clusters::order`] that are to be evaluated once, with the grid.
     pub fn build_without_list(&mut self, grid: &Grid, physics: &Physics, moving: Moving) {
         self.valid = false;
-        self.blocks.fill(grid, physics, moving, 0.0);
+        self.blocks.fill(grid, physics, moving, Keeping::ONCE);
         self.list.divide(&self.blocks, 2 * TASKS_PER_THREAD);
         self.sums.lay_out(&mut self.list, &self.blocks, Reach::Grid(grid));
     }

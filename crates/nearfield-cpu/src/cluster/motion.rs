@@ -7,11 +7,11 @@
 //! step.
 
 use super::{
-    BLOCK, Moving,
-    blocks::{Blocks, Octet, PAGE},
+    BLOCK, Keeping, Moving,
+    blocks::{Blocks, Octet, PAGE, UNMOVED},
 };
 use crate::lanes;
-use nearfield_core::predicate::conservative_range;
+use nearfield_core::{predicate::conservative_range, skin::ListIntervals};
 use rayon::prelude::*;
 
 /// Evaluations that an inner list is meant to serve.
@@ -23,6 +23,11 @@ const LEAST_BUDGET: f32 = 0.25;
 /// Most of its limit that a particle may be expected to go in half the life of an outer list.
 const LEAD: f32 = 0.6;
 
+/// How much farther than its lead a particle is never seen in a system whose particles are of like speed, and the least
+/// of such bounds over the cutoff: whoever is ends a list that serves for a number of steps.
+const FAR: f32 = 4.0;
+const LEAST_FAR: f32 = 1e-3;
+
 /// What is known of how particles move.
 #[derive(Debug, Default)]
 pub(super) struct Motion {
@@ -32,13 +37,43 @@ pub(super) struct Motion {
     surprise: f32,
     /// Evaluations that the last outer list served.
     pub life: u32,
+    /// How lists are kept that serve for a number of steps, whatever particles do.
+    intervals: Option<ListIntervals>,
     since_build: u32,
     since_prune: u32,
 }
 
+/// What is to be done about lists before an evaluation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Due {
+    Nothing,
+    Pruning,
+    Building,
+}
+
+impl Motion {
+    /// What is due if particles have `kept` to their budgets or not.
+    pub fn due(&self, kept: bool) -> Due {
+        match self.intervals {
+            None if kept => Due::Nothing,
+            None => Due::Pruning,
+            Some(_) if !kept => Due::Building,
+            Some(lists) if self.since_prune < lists.prune_every => Due::Nothing,
+            Some(lists) if self.since_build + lists.prune_every <= lists.rebuild_every => Due::Pruning,
+            Some(_) => Due::Building,
+        }
+    }
+
+    /// The reach of inner lists, where they do not depend on budgets.
+    pub fn inner_reach(&self) -> Option<f32> {
+        self.intervals.map(|lists| lists.inner_reach)
+    }
+}
+
 impl Blocks {
     /// Expects particles somewhere halfway through the life of the outer list that is to be built.
-    pub fn begin_motion(&mut self, moving: Moving, skin: f32) {
+    pub fn begin_motion(&mut self, moving: Moving, keeping: Keeping) {
+        let skin = keeping.reach(self.cutoff) - self.cutoff;
         let motion = &mut self.motion;
         if motion.since_build > 0 {
             motion.life = motion.since_build;
@@ -48,7 +83,12 @@ impl Blocks {
         motion.limit = 0.5 * skin * (1.0 - 1e-5) - conservative_range(0.0, self.extent);
         motion.surprise = if motion.surprise > 0.0 { motion.surprise } else { 0.01 * self.cutoff };
         self.lead = LEAD * motion.limit.max(0.0);
-        let (lead, time) = (self.lead, 0.5 * motion.life as f32 * moving.dt);
+        let mut life = motion.life;
+        motion.intervals = None;
+        if let Keeping::Tolerant(lists) = keeping {
+            (motion.intervals, life, self.lead) = (Some(lists), lists.rebuild_every, lists.lead);
+        }
+        let (lead, time) = (self.lead, 0.5 * life as f32 * moving.dt);
         let (first, position) = (&self.first, &self.position);
         if skin == 0.0 {
             return self.midway.copy_from_slice(position);
@@ -68,6 +108,14 @@ impl Blocks {
     /// Gives each particle a budget of displacement for the next few evaluations, by its velocity and no more than what
     /// the outer list leaves it. False when that is too little for some particle.
     pub fn plan_motion(&mut self, moving: Moving) -> bool {
+        // Whoever has crossed a face, for now, may come back and cross it again: it is not far from its new midway then.
+        for (crossed, crossings) in self.crossed.iter_mut().zip(&self.crossings) {
+            *crossed = *crossed && *crossings != Octet::default();
+        }
+        if let Some(lists) = self.motion.intervals {
+            self.foresee_motion(moving, lists);
+            return true;
+        }
         let motion = &mut self.motion;
         // A budget that lasts longer or shorter than meant is too large or too small.
         if motion.since_prune > 0 {
@@ -100,6 +148,28 @@ impl Blocks {
             super::isa().run(plan)
         });
         enough.reduce(|| true, |a, b| a & b)
+    }
+
+    /// Expects particles halfway through the life of the inner list that is to be made, and all nearly there.
+    fn foresee_motion(&mut self, moving: Moving, lists: ListIntervals) {
+        self.motion.since_prune = 0;
+        let time = 0.5 * lists.prune_every as f32 * moving.dt;
+        // Who crosses a face must be seen to be far.
+        let quarters = self.period.into_iter().filter(|&period| period > 0.0).map(|period| 0.25 * period);
+        let far = quarters.fold((FAR * lists.lead).max(LEAST_FAR * self.cutoff), f32::min);
+        let Self { first, position, budget, midway_of_inner, .. } = self;
+        let (first, position) = (&*first, &*position);
+        let blocks = budget.par_iter_mut().zip(midway_of_inner).with_min_len(PAGE).enumerate();
+        blocks.for_each(|(b, (budget, midway))| {
+            let particles = first[b] as usize..first[b + 1] as usize;
+            budget[..particles.len()].fill(far);
+            *midway = position[b];
+            for (axis, v) in moving.velocity.iter().enumerate() {
+                for (x, v) in midway.0[axis].iter_mut().zip(&v[particles.clone()]) {
+                    *x += time * v;
+                }
+            }
+        });
     }
 
     /// Pages of blocks, to be given new positions.
@@ -184,7 +254,7 @@ impl lanes::Kernel for Plan<'_> {
                 let here = if wanted_here < left_here { wanted_here } else { left_here };
                 let here = if here > 0.0 { here } else { 0.0 };
                 let budget = if expected { wanted } else { here };
-                self.budget[k][lane] = if lane < n { budget } else { f32::INFINITY };
+                self.budget[k][lane] = if lane < n { budget } else { UNMOVED };
                 let lacks = !expected & (left_here < LEAST_BUDGET * wanted_here) & (lane < n);
                 short |= u32::from(lacks);
             }
@@ -261,7 +331,8 @@ impl Page<'_> {
             }
             kept &= moved2 < self.budget[k][lane] * self.budget[k][lane];
         }
-        self.crossed[k] = self.crossings[k] != Octet::default();
+        // Until the next pruning, though all may have come back.
+        self.crossed[k] |= self.crossings[k] != Octet::default();
         kept
     }
 }

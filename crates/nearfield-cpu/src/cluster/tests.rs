@@ -1,7 +1,7 @@
 //! The pair list against all pairs, and kernels of every instruction set against float64.
 
 use super::{
-    BLOCK, Clusters, Moving, Output,
+    BLOCK, Clusters, Keeping, Moving, Output,
     blocks::Octet,
     lennard_jones::{Kernel, Law, Plain, Typed},
     list::Pairs,
@@ -46,7 +46,7 @@ fn build(mut system: System, skin: f32, life: u32) -> Built {
     let grid = sort(&mut system, skin, &mut Clusters::default());
     let mut clusters = Clusters::default();
     clusters.blocks.motion.life = life;
-    assert!(clusters.build(&grid, &physics, moving(&system.particles), skin, u64::MAX));
+    assert!(clusters.build(&grid, &physics, moving(&system.particles), Keeping::Strict { skin }, u64::MAX));
     Built { system, physics, clusters }
 }
 
@@ -216,7 +216,7 @@ fn no_pair_is_missed_while_particles_move_and_cross_faces() {
                 crossed += u32::from(crossings != [0; 3]);
                 particles.position.set(i, wrapped);
             }
-            if !built.clusters.refresh(moving(&built.system.particles)) {
+            if !built.clusters.refresh(moving(&built.system.particles), || true) {
                 break;
             }
             served += 1;
@@ -224,6 +224,26 @@ fn no_pair_is_missed_while_particles_move_and_cross_faces() {
         }
         assert!((10..60).contains(&served), "the list served {served} evaluations");
         assert!(crossed > 10, "{crossed} particles crossed a face");
+    }
+}
+
+/// The list is pruned while a particle is beyond the face.
+#[test]
+fn a_particle_that_crosses_a_face_to_and_fro_keeps_its_pairs() {
+    let mut built = build(gas(300, [5.0, 6.0, 7.0], Boundary::Periodic, 1.5, 5), 0.6, 0);
+    let x = |particles: &Particles, i: usize| particles.position.get(i)[0];
+    let particles = &built.system.particles;
+    let last = (0..particles.len()).max_by(|&a, &b| x(particles, a).total_cmp(&x(particles, b))).unwrap();
+    assert!(x(particles, last) > 4.95);
+    for (step, to) in [4.999, 0.001, 4.999, 0.002, 4.998, 0.001].into_iter().enumerate() {
+        let [_, y, z] = built.system.particles.position.get(last);
+        built.system.particles.position.set(last, [to, y, z]);
+        assert!(built.clusters.refresh(moving(&built.system.particles), || true));
+        if step == 1 {
+            assert!(built.clusters.blocks.plan_motion(moving(&built.system.particles)));
+            built.clusters.prune();
+        }
+        assert_eq!(evaluate(&mut built, None).0, neighbors_by_oracle(&built.system), "at step {step}");
     }
 }
 

@@ -4,15 +4,17 @@ use super::{
     evaluate::{Loaded, NonFiniteWatch},
     integrate::{Integrator, Moving},
     state::State,
+    tolerance::Tolerance,
 };
 use crate::{
-    cluster::{BLOCK, Clusters, Counts, Mover, Output, has_vector_law},
+    cluster::{BLOCK, Clusters, Counts, Keeping, Mover, Output, has_vector_law},
     parallel::Scattered,
+    physics::Physics,
 };
 use nearfield_core::{
-    Method, Quantities, Radii, Result,
+    Method, Plan, Quantities, Result,
     maintenance::Action,
-    skin::{ListUse, SkinTuner},
+    skin::{ListCosts, ListUse, SkinTuner},
 };
 use std::{
     ops::Range,
@@ -33,13 +35,20 @@ const LISTING: f64 = 9.0;
 const PRUNING: f64 = 4.6;
 const STEPPING: f64 = 1.2;
 
+/// The same for lists that serve for a number of steps; computing the pairs of an inner list costs the kernel's 45 ns over
+/// the 3.6 that a particle of the melt has.
+const COSTS: ListCosts =
+    ListCosts { sorting: SORTING, listing: LISTING, pruning: PRUNING, keeping: STEPPING, computing: 12.5 };
+
 /// The pair list and how it is kept.
 pub(super) struct StoredClusters {
     pub clusters: Clusters,
     listing: Listing,
+    /// What lists may miss.
+    tolerance: Option<Tolerance>,
     /// Evaluations since the list was built.
     age: u64,
-    /// Steps that had been taken when the list was built; none where there is no list.
+    /// Steps that had been taken when the list was built; none where there is no list, or one that may miss pairs.
     built_at: Option<u64>,
     /// Whether the list must not outlive the present moment: see [`StoredClusters::end`].
     ended: AtomicBool,
@@ -56,9 +65,11 @@ enum Listing {
 }
 
 impl StoredClusters {
-    pub fn new(radii: &Radii) -> Self {
-        let listing = if radii.is_uniform() { Listing::Possible } else { Listing::DifferentRadii };
-        Self { clusters: Clusters::default(), listing, age: 0, built_at: None, ended: AtomicBool::new(false) }
+    pub fn new(plan: &Plan, physics: &Physics, state: &State) -> Self {
+        let listing = if physics.radii.is_uniform() { Listing::Possible } else { Listing::DifferentRadii };
+        let tolerance = Tolerance::new(plan, physics, state);
+        let clusters = Clusters::default();
+        Self { clusters, listing, tolerance, age: 0, built_at: None, ended: AtomicBool::new(false) }
     }
 
     /// Has list and forces made anew before the next step. Another engine that takes the particles over has no list:
@@ -73,6 +84,7 @@ impl StoredClusters {
         if ended {
             // With what it has learned of the particles' motion.
             self.clusters = Clusters::default();
+            self.tolerance.iter_mut().for_each(Tolerance::forget);
             self.built_at = None;
         }
         ended
@@ -87,7 +99,7 @@ impl StoredClusters {
     /// Has the skin of the next list chosen, after what the last one was good for.
     fn choose_skin(&mut self, skin: &mut SkinTuner, state: &State, dt: f32, steps: u64) {
         let last = self.built_at.take().map(|built| (steps - built, self.clusters.counts()));
-        if let Some((steps, Counts { entries, prunings })) = last {
+        if let Some((steps, Counts { entries, prunings, .. })) = last {
             let per_step = prunings.saturating_sub(1) as f64 / steps.max(1) as f64;
             skin.record(ListUse {
                 steps: steps as f64,
@@ -108,13 +120,16 @@ impl Loaded {
         stored.age += 1;
         let start = Instant::now();
         let list = stored.listing == Listing::Possible;
-        let serves = list && stored.clusters.refresh(state.moving_slices(*dt));
+        let calm = || stored.tolerance.as_ref().is_none_or(|tolerance| tolerance.allows(state));
+        let serves = list && stored.clusters.refresh(state.moving_slices(*dt), calm);
         report.refit_seconds += start.elapsed().as_secs_f64();
         if serves {
             return;
         }
         let start = Instant::now();
-        if list {
+        let tolerant = stored.tolerance.as_mut().filter(|_| list);
+        let tolerant = tolerant.and_then(|tolerance| tolerance.choose(&stored.clusters, state, skin, *dt, &COSTS));
+        if list && tolerant.is_none() {
             stored.choose_skin(skin, state, *dt, *steps);
         }
         let input = state.input(physics, state.radii(physics));
@@ -127,16 +142,23 @@ impl Loaded {
             state.reorder(order);
             let moving = state.moving_slices(*dt);
             let budget = plan.memory_budget.min(MOST_BYTES * state.len() as u64);
-            let mut fits = list && stored.clusters.build(grid, physics, moving, skin.skin(), budget);
-            while list && !fits && skin.shrink() {
-                fits = stored.clusters.build(grid, physics, moving, skin.skin(), budget);
+            let strict = |skin: &SkinTuner| Keeping::Strict { skin: skin.skin() };
+            let mut keeping = tolerant.map_or_else(|| strict(skin), Keeping::Tolerant);
+            let mut fits = list && stored.clusters.build(grid, physics, moving, keeping, budget);
+            while list && !fits && (matches!(keeping, Keeping::Tolerant(_)) || skin.shrink()) {
+                keeping = strict(skin);
+                fits = stored.clusters.build(grid, physics, moving, keeping, budget);
             }
             if fits {
-                (report.skin, report.list_builds) = (skin.skin(), report.list_builds + 1);
+                report.list_builds += 1;
+                (report.skin, report.tolerant_lists, stored.built_at) = match keeping {
+                    Keeping::Strict { skin } => (skin, None, Some(*steps)),
+                    Keeping::Tolerant(lists) => (lists.outer_reach - physics.cutoff(), Some(lists), None),
+                };
                 if stored.age == 1 && report.skin > 0.0 && report.list_builds > 1 {
                     report.dangerous_builds += 1;
                 }
-                (stored.age, stored.built_at) = (0, Some(*steps));
+                stored.age = 0;
             } else {
                 if list {
                     (stored.listing, stored.clusters) = (Listing::TooLarge, Clusters::default());

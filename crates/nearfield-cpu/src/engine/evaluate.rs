@@ -52,15 +52,14 @@ pub(super) struct Loaded {
 
 impl Loaded {
     pub fn new(system: &System, plan: &Plan) -> Self {
-        let physics = Physics::new(system);
+        let (physics, state) = (Physics::new(system), State::new(system));
         Self {
             plan: *plan,
-            state: State::new(system),
             results: Results::default(),
             upkeep: Upkeep::new(plan),
             scatter: ScatterSums::default(),
             list: StoredList::new(),
-            clusters: StoredClusters::new(&system.radii),
+            clusters: StoredClusters::new(plan, &physics, &state),
             skin: SkinTuner::new(plan.skin, system.radii.mean(), physics.sim_box.room_around(system.radii.largest())),
             dt: 0.0,
             steps: 0,
@@ -70,6 +69,7 @@ impl Loaded {
             forces_valid: false,
             sorted_at: None,
             physics,
+            state,
         }
     }
 

@@ -11,6 +11,7 @@ mod rt_list;
 mod run;
 mod state;
 mod thermostat;
+mod tolerance;
 
 use crate::InputRadii;
 use evaluate::Loaded;

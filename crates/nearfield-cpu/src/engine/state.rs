@@ -72,6 +72,19 @@ impl State {
         exact_sum(self.len(), |i| self.kinetic_energy_of(i, types))
     }
 
+    /// Number of particles of a type.
+    pub fn count(&self, kind: u32) -> usize {
+        if self.kind.is_empty() { self.len() } else { self.kind.iter().filter(|&&k| k == kind).count() }
+    }
+
+    /// Mean square of a component of the velocities of a type, independent of the particles' order; zero without any.
+    pub fn velocity2(&self, kind: u32) -> f64 {
+        let square = |i| {
+            if self.kind(i) == kind { self.velocity.get(i).iter().map(|&v| f64::from(v).powi(2)).sum() } else { 0.0 }
+        };
+        exact_sum(self.len(), square) / (3 * self.count(kind).max(1)) as f64
+    }
+
     /// The particles as a structure's input, with the radii that the structure shall cover.
     pub fn input<'a>(&'a self, physics: &'a Physics, radii: InputRadii<'a>) -> Input<'a> {
         let [x, y, z] = self.position.axes();

@@ -53,6 +53,9 @@ pub struct MethodConfig {
     pub order: Order,
     /// Verlet skin of list methods.
     pub skin: Skin,
+    /// Greatest expected drift of the energy, for each particle and unit of time, from pairs that lists miss; 0 for lists
+    /// that miss none.
+    pub list_tolerance: f64,
     /// Sum forces independently of order.
     pub deterministic: bool,
     /// Most bytes a stored neighbour list may take.
@@ -68,6 +71,7 @@ impl Default for MethodConfig {
             images: Choice::Auto,
             order: Order::Morton,
             skin: Skin::Auto,
+            list_tolerance: 0.0,
             deterministic: false,
             memory_budget: Bytes(4 << 30),
         }
@@ -80,6 +84,10 @@ impl MethodConfig {
             && !(skin.is_finite() && skin >= 0.0)
         {
             return Err(Error::invalid("method.skin", self.skin, "must be zero (a list each step) or positive"));
+        }
+        if !(self.list_tolerance.is_finite() && self.list_tolerance >= 0.0) {
+            let reason = "must be zero (lists miss no pair) or positive";
+            return Err(Error::invalid("method.list_tolerance", self.list_tolerance, reason));
         }
         if self.memory_budget.0 == 0 {
             return Err(Error::invalid("method.memory_budget", self.memory_budget, "must be positive"));
@@ -99,6 +107,7 @@ impl MethodConfig {
             order: self.order,
             maintenance: self.maintenance,
             skin: self.skin,
+            list_tolerance: self.list_tolerance,
             deterministic: self.deterministic,
             memory_budget: self.memory_budget.0,
         }

@@ -124,6 +124,11 @@ const METHOD: &[Key] = &[
     key("images", Accepts::Names(|| or_auto(Images::ALL.iter().map(|i| i.name()))), "periodic images of BVH methods"),
     key("order", Accepts::Names(|| Order::ALL.iter().map(|o| o.name()).collect()), "of particles in memory"),
     key("skin", SKIN, "list methods: margin around the cutoff, or \"auto\"; 0 builds the list each step"),
+    key(
+        "list_tolerance",
+        NUMBER,
+        "cluster on a CPU: drift of energy per particle and time that lists may cause; 0 = none",
+    ),
     key("deterministic", SWITCH, "bitwise equal results for any method and number of threads"),
     key("memory_budget", MEMORY, "most memory a stored neighbour list may take"),
 ];
