@@ -120,12 +120,7 @@ impl Clusters {
         Counts { entries: self.list.entries(), prunings: self.prunings }
     }
 
-    /// The order of particles in which blocks are contiguous: place k is for particle `order[k]` of the grid's input.
-    pub fn order(&mut self, grid: &Grid) -> &[u32] {
-        self.blocks.sort(grid)
-    }
-
-    /// Builds blocks and list, for particles in [`Clusters::order`]. `skin` is the sum of what two particles may move
+    /// Builds blocks and list, for particles in the order of the grid's slots. `skin` is the sum of what two particles may move
     /// before the list is outrun; without any it is good for one evaluation. False when the list would take more than
     /// `budget` bytes: there is none then.
     pub fn build(&mut self, grid: &Grid, physics: &Physics, moving: Moving, skin: f32, budget: u64) -> bool {
@@ -145,7 +140,7 @@ impl Clusters {
         listed
     }
 
-    /// Builds blocks without a list, for particles in [`Clusters::order`] that are to be evaluated once, with the grid.
+    /// Builds blocks without a list, for particles in the order of the grid's slots that are to be evaluated once, with the grid.
     pub fn build_without_list(&mut self, grid: &Grid, physics: &Physics, moving: Moving) {
         self.valid = false;
         self.blocks.fill(grid, physics, moving, 0.0);
