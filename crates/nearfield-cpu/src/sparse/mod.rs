@@ -9,6 +9,8 @@
 
 mod sums;
 mod sweep;
+#[cfg(test)]
+mod tests;
 
 use crate::{Grid, lanes::Isa};
 use nearfield_core::SimBox;
@@ -17,7 +19,10 @@ use sums::Sums;
 use sweep::{Sweep, Task};
 
 /// Neighbours of a particle, as the density lets expect, up to which a system is sparse.
-const SPARSE: f64 = 0.5;
+const SPARSE: f64 = 1.0;
+
+/// Tests for each particle after which looking for pairs is given up: the sparsest systems take half of one.
+const MOST_TESTS: usize = 8;
 
 /// Tasks for each thread.
 const TASKS_PER_THREAD: usize = 8;
@@ -47,13 +52,17 @@ impl SparsePairs {
     /// Finds all pairs closer than `radius`. False, with nothing found, when it turns out that there are too many
     /// candidates, clustered as they are where density does not show it.
     pub fn find(&mut self, grid: &Grid, sim_box: &SimBox, radius: f32) -> bool {
+        self.find_on(Isa::detect(), grid, sim_box, radius, MOST_TESTS)
+    }
+
+    fn find_on(&mut self, isa: Isa, grid: &Grid, sim_box: &SimBox, radius: f32, most_tests: usize) -> bool {
         let n = grid.n_pencils();
         let n_tasks = (TASKS_PER_THREAD * rayon::current_num_threads()).min(n);
         self.tasks.resize_with(n_tasks, Task::default);
         let tasks = self.tasks.par_iter_mut().with_max_len(1).enumerate();
         let few = tasks.map(|(t, task)| {
             let pencils = n * t / n_tasks..n * (t + 1) / n_tasks;
-            Isa::detect().run(Sweep { grid, sim_box, radius, pencils, task })
+            isa.run(Sweep { grid, sim_box, radius, most_tests, pencils, task })
         });
         let few = few.reduce(|| true, |a, b| a & b);
         self.pairs.clear();

@@ -10,9 +10,6 @@ use crate::{
 use nearfield_core::{SimBox, predicate};
 use std::ops::Range;
 
-/// Tests for each particle after which a sweep gives up: the sparsest systems take half of one.
-const MOST_TESTS: usize = 4;
-
 /// Tests that a pair counts as.
 const TESTS_PER_PAIR: usize = 8;
 
@@ -38,6 +35,8 @@ pub(super) struct Sweep<'a> {
     pub grid: &'a Grid,
     pub sim_box: &'a SimBox,
     pub radius: f32,
+    /// For each particle.
+    pub most_tests: usize,
     pub pencils: Range<usize>,
     pub task: &'a mut Task,
 }
@@ -47,11 +46,11 @@ impl lanes::Kernel for Sweep<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) -> bool {
-        let Self { grid, sim_box, radius, pencils, task } = self;
+        let Self { grid, sim_box, radius, most_tests, pencils, task } = self;
         let Task { pairs, near, faces } = task;
         let slots = grid.slots();
         let n = grid.pencil_slots(pencils.end - 1).end - grid.pencil_slots(pencils.start).start;
-        let mut left = MOST_TESTS * (n + LANES);
+        let mut left = most_tests.saturating_mul(n + LANES);
         pairs.clear();
         for p in pencils {
             let Some(here) = grid.pencil_box(p, radius) else { continue };
