@@ -1,7 +1,7 @@
 //! The cell grid: pencils of cells over bins of similar radius.
 //!
-//! Space is cut along y and z into square *pencils*; the particles of a pencil are ordered along x by fine *cells* and
-//! lie next to each other in memory. What a group of queries can reach in one pencil is therefore one run of slots,
+//! Space is cut along y and z into square *pencils*; the particles of a pencil lie next to each other in memory, sorted
+//! along x and divided into fine *cells*. What a group of queries can reach in one pencil is therefore one run of slots,
 //! found by two look-ups: the reach along x is `sqrt(r² - d²)`, with d the distance from the group to the pencil.
 //!
 //! - Pencil widths follow the particles, never the radius: about [`PENCIL_OCCUPANCY`] particles to a cube of that
