@@ -18,6 +18,7 @@ mod parallel;
 mod physics;
 mod search;
 mod slots;
+mod sparse;
 mod structure;
 #[cfg(test)]
 mod testing;

@@ -102,3 +102,48 @@ fn a_run_of_clusters_continues_bit_for_bit_from_its_memory_order() {
         assert_eq!(whole.report().skin, continued.report().skin, "{skin}");
     }
 }
+
+/// Particles anywhere, fast enough to meet many others in some hundred steps.
+fn gas(n: usize, length: f32, boundary: Boundary) -> System {
+    let mut system = jittered(1, length, boundary);
+    let mut seed = 7u32;
+    let mut random = || {
+        seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (seed >> 8) as f32 / (1 << 24) as f32
+    };
+    system.particles = Particles::at((0..n).map(|_| [0; 3].map(|_: i32| length * random())).collect::<Vec<_>>());
+    for i in 0..n {
+        system.particles.velocity.set(i, [0; 3].map(|_: i32| 10.0 * (random() - 0.5)));
+    }
+    system
+}
+
+#[test]
+fn sparse_systems_run_the_same_trajectory_bit_for_bit_whether_pairs_are_looked_for_or_all_are_tested() {
+    for boundary in [Boundary::Periodic, Boundary::Wall, Boundary::Open] {
+        let system = gas(1000, 70.0, boundary);
+        let dynamics = Dynamics { max_displacement: 0.1, ..Dynamics::nve(0.01) };
+        let run = |method, deterministic| {
+            let mut engine = CpuEngine::new();
+            let plan = Plan { deterministic, skin: Skin::NONE, ..Plan::new(method) };
+            engine.load(&system, &plan).unwrap();
+            // Particles are put in order at the beginning and twice more.
+            let totals = engine.advance(&dynamics, 0, 230, Quantities::ALL).unwrap();
+            let (mut particles, mut results) = (system.particles.clone(), PerParticle::default());
+            engine.snapshot(&mut particles).unwrap();
+            engine.per_particle(&mut results).unwrap();
+            (particles, results, totals)
+        };
+        let expected = run(Method::Brute, true);
+        assert!(expected.2.pairs > 50, "{}", expected.2.pairs);
+        for (method, deterministic) in
+            [(Method::Cell, true), (Method::Cell, false), (Method::Cluster, true), (Method::Cluster, false)]
+        {
+            let (particles, results, totals) = run(method, deterministic);
+            assert_eq!(particles, expected.0, "{method} {boundary:?}");
+            assert_eq!(results.force, expected.1.force, "{method} {boundary:?}");
+            assert_eq!((results.energy, results.neighbors), (expected.1.energy.clone(), expected.1.neighbors.clone()));
+            assert_eq!(totals, expected.2, "{method} {boundary:?}");
+        }
+    }
+}

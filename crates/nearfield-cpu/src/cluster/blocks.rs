@@ -1,7 +1,7 @@
 //! Particles in blocks of eight, sorted in space.
 
 use super::{BLOCK, Keeping, Moving, motion::Motion, padding};
-use crate::{Grid, Structure, parallel::Scattered, physics::Physics};
+use crate::{Grid, physics::Physics};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -44,7 +44,6 @@ pub(super) struct Blocks {
     /// Farthest that `midway` is from where a particle was when the outer list was built.
     pub lead: f32,
     pub motion: Motion,
-    order: Vec<u32>,
 }
 
 impl Blocks {
@@ -68,27 +67,7 @@ impl Blocks {
         page * PAGE..((page + 1) * PAGE).min(self.len())
     }
 
-    /// Sorts each pencil of the grid along x. Gives the particle for each place.
-    pub fn sort(&mut self, grid: &Grid) -> &[u32] {
-        let slots = grid.slots();
-        self.order.resize(slots.len(), 0);
-        let places = Scattered::new(&mut self.order);
-        (0..grid.n_pencils()).into_par_iter().with_min_len(8).for_each(|p| {
-            let pencil = grid.pencil_slots(p);
-            // SAFETY: the slots of pencils do not overlap.
-            let order = unsafe { places.range(pencil.clone()) };
-            for (place, slot) in order.iter_mut().zip(pencil) {
-                *place = slot as u32;
-            }
-            sort_along(&slots.x, order);
-            for place in order {
-                *place = slots.particle[*place as usize];
-            }
-        });
-        &self.order
-    }
-
-    /// Fills the blocks with particles in the order of [`Blocks::sort`].
+    /// Fills the blocks with particles in the order of the grid's slots.
     pub fn fill(&mut self, grid: &Grid, physics: &Physics, moving: Moving, keeping: Keeping) {
         let lengths = physics.sim_box.lengths();
         self.period = std::array::from_fn(|a| if physics.sim_box.is_periodic(a) { lengths[a] } else { 0.0 });
@@ -148,26 +127,7 @@ impl Blocks {
         let octets = self.position.capacity() + self.crossings.capacity();
         (octets + self.midway.capacity() + self.midway_of_inner.capacity()) * size_of::<Octet>()
             + (self.kind.capacity() + self.budget.capacity()) * 4 * BLOCK
-            + 4 * (self.first.capacity() + self.block_of.capacity() + self.order.capacity())
+            + 4 * (self.first.capacity() + self.block_of.capacity())
             + self.crossed.capacity()
-    }
-}
-
-/// Sorts `order` by `x`, nearly sorted as it is: the grid has put particles into cells of two.
-fn sort_along(x: &[f32], order: &mut [u32]) {
-    let mut moves = 8 * order.len();
-    for k in 1..order.len() {
-        let (slot, key) = (order[k], x[order[k] as usize]);
-        let mut at = k;
-        while at > 0 && x[order[at - 1] as usize] > key {
-            order[at] = order[at - 1];
-            at -= 1;
-        }
-        order[at] = slot;
-        moves = moves.saturating_sub(k - at);
-        if moves == 0 {
-            order.sort_by(|&a, &b| x[a as usize].total_cmp(&x[b as usize]).then(a.cmp(&b)));
-            return;
-        }
     }
 }

@@ -154,13 +154,8 @@ impl Clusters {
         Counts { entries: list.entries(), entries_of_inner: list.entries_of_inner(), prunings: *prunings }
     }
 
-    /// The order of particles in which blocks are contiguous: place k is for particle `order[k]` of the grid's input.
-    pub fn order(&mut self, grid: &Grid) -> &[u32] {
-        self.blocks.sort(grid)
-    }
-
-    /// Builds blocks and list, for particles in [`Clusters::order`]. False when the list would take more than `budget` bytes:
-    /// there is none then.
+    /// Builds blocks and list, for particles in the order of the grid's slots. False when the list would take more than
+    /// `budget` bytes: there is none then.
     pub fn build(&mut self, grid: &Grid, physics: &Physics, moving: Moving, keeping: Keeping, budget: u64) -> bool {
         self.blocks.fill(grid, physics, moving, keeping);
         let listed = self.list.build(grid, &self.blocks, keeping.reach(physics.cutoff()), budget);
@@ -178,7 +173,7 @@ impl Clusters {
         listed
     }
 
-    /// Builds blocks without a list, for particles in [`Clusters::order`] that are to be evaluated once, with the grid.
+    /// Builds blocks without a list, for particles in the order of the grid's slots that are to be evaluated once, with the grid.
     pub fn build_without_list(&mut self, grid: &Grid, physics: &Physics, moving: Moving) {
         self.valid = false;
         self.blocks.fill(grid, physics, moving, Keeping::ONCE);

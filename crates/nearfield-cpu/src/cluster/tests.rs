@@ -43,7 +43,7 @@ fn moving(particles: &Particles) -> Moving<'_> {
 /// `life` is how many steps the list is thought to serve.
 fn build(mut system: System, skin: f32, life: u32) -> Built {
     let physics = Physics::new(&system);
-    let grid = sort(&mut system, skin, &mut Clusters::default());
+    let grid = sort(&mut system, skin);
     let mut clusters = Clusters::default();
     clusters.blocks.motion.life = life;
     assert!(clusters.build(&grid, &physics, moving(&system.particles), Keeping::Strict { skin }, u64::MAX));
@@ -51,12 +51,12 @@ fn build(mut system: System, skin: f32, life: u32) -> Built {
 }
 
 /// Puts the particles into the order of clusters. Gives the grid that they are in.
-fn sort(system: &mut System, skin: f32, clusters: &mut Clusters) -> Grid {
+fn sort(system: &mut System, skin: f32) -> Grid {
     let mut grid = Grid::default();
     let [x, y, z] = system.particles.position.axes();
     let radii = InputRadii::Uniform(system.radii.largest() + skin);
     grid.build(&Input { sim_box: &system.sim_box, position: [x, y, z], radii, kind: &[] });
-    let order = clusters.order(&grid).to_vec();
+    let order = grid.order().to_vec();
     assert_eq!(order.len(), grid.slots().len());
     let sorted = |of: &Vec3s| order.iter().map(|&i| of.get(i as usize)).collect::<Vec<_>>();
     let (position, velocity) = (sorted(&system.particles.position), sorted(&system.particles.velocity));
@@ -252,7 +252,7 @@ fn batches_find_the_pairs_of_lists_and_give_their_forces() {
     for mut system in systems() {
         let what = format!("{:?}, {} particles", system.sim_box, system.particles.len());
         let mut clusters = Clusters::default();
-        let grid = sort(&mut system, 0.0, &mut clusters);
+        let grid = sort(&mut system, 0.0);
         let mut listed = build(system.clone(), 0.3, 0);
         let expected = listed.system.particles.position.clone();
         clusters.build_without_list(&grid, &listed.physics, moving(&system.particles));

@@ -115,8 +115,8 @@ impl StoredClusters {
 
 impl Loaded {
     /// Brings the list up to date with the positions, or the grid where there can be no list.
-    pub fn prepare_clusters(&mut self) {
-        let Self { plan, physics, state, upkeep, clusters: stored, report, skin, dt, steps, .. } = self;
+    pub fn prepare_clusters(&mut self, step: u64) {
+        let Self { physics, state, upkeep, clusters: stored, report, skin, dt, steps, .. } = self;
         stored.age += 1;
         let start = Instant::now();
         let list = stored.listing == Listing::Possible;
@@ -135,11 +135,20 @@ impl Loaded {
         let input = state.input(physics, state.radii(physics));
         upkeep.update(Action::Build, &input, report);
         let gridded = start.elapsed();
+        if list && skin.skin() == 0.0 {
+            let due = self.reordering_is_due(step);
+            if self.find_sparse_pairs(due) {
+                self.sorted_at = if due { Some(step) } else { self.sorted_at };
+                self.report.list_builds += 1;
+                self.report.build_seconds += (start.elapsed() - gridded).as_secs_f64();
+                return;
+            }
+        }
+        let Self { plan, physics, state, upkeep, clusters: stored, report, skin, dt, steps, .. } = self;
         if stored.listing != Listing::DifferentRadii {
             let grid = upkeep.index.grid().expect("cluster has a grid");
-            let order = stored.clusters.order(grid);
             // Forces are computed anew before they are looked at.
-            state.reorder(order);
+            state.reorder(grid.order());
             let moving = state.moving_slices(*dt);
             let budget = plan.memory_budget.min(MOST_BYTES * state.len() as u64);
             let strict = |skin: &SkinTuner| Keeping::Strict { skin: skin.skin() };
@@ -208,12 +217,11 @@ impl Loaded {
         self.start(integrator, from + 1)?;
         for step in from + 1..from + steps {
             self.prepare(step);
-            if self.clusters.listing == Listing::Possible {
+            if self.clusters.listing == Listing::Possible && !self.sparse.found {
                 self.move_by_clusters(integrator, step)?;
             } else {
-                self.evaluate(Quantities::FORCES, step)?;
-                self.finish(integrator);
-                self.start(integrator, step + 1)?;
+                self.query(Quantities::FORCES, step)?;
+                self.finish_and_start(integrator, step + 1)?;
             }
         }
         self.evaluate(quantities, from + steps)?;

@@ -7,6 +7,7 @@ use super::{
     reorder,
     results::Results,
     rt_list::{Around, Outcome, StoredList},
+    sparse::StoredPairs,
     state::State,
 };
 use crate::{
@@ -14,7 +15,7 @@ use crate::{
     physics::Physics,
 };
 use nearfield_core::{
-    Error, Method, Plan, Quantities, Report, Result, System,
+    Error, Method, Order, Plan, Quantities, Report, Result, System,
     maintenance::{Action, Motion},
     skin::SkinTuner,
 };
@@ -33,6 +34,7 @@ pub(super) struct Loaded {
     pub scatter: ScatterSums,
     pub list: StoredList,
     pub clusters: StoredClusters,
+    pub sparse: StoredPairs,
     /// The skin of either kind of list.
     pub skin: SkinTuner,
     /// Time step of the run; zero outside of one.
@@ -60,6 +62,7 @@ impl Loaded {
             scatter: ScatterSums::default(),
             list: StoredList::new(),
             clusters: StoredClusters::new(plan, &physics, &state),
+            sparse: StoredPairs::default(),
             skin: SkinTuner::new(plan.skin, system.radii.mean(), physics.sim_box.room_around(system.radii.largest())),
             dt: 0.0,
             steps: 0,
@@ -75,14 +78,22 @@ impl Loaded {
 
     /// Computes forces, and what else is asked for, at the present positions, which belong to `step`.
     pub fn evaluate(&mut self, quantities: Quantities, step: u64) -> Result<()> {
-        self.forces_valid = false;
         self.prepare(step);
+        self.query(quantities, step)
+    }
+
+    /// Computes forces, and what else is asked for, after [`Loaded::prepare`].
+    pub fn query(&mut self, quantities: Quantities, step: u64) -> Result<()> {
+        self.forces_valid = false;
         self.results.prepare(self.state.len(), quantities.energy);
         let watch = NonFiniteWatch::default();
         let start = Instant::now();
-        if self.plan.method == Method::Cluster
-            && let Some(finite) = self.evaluate_clusters()
-        {
+        let finite = match self.plan.method {
+            _ if self.sparse.found => Some(self.evaluate_sparse_pairs()),
+            Method::Cluster => self.evaluate_clusters(),
+            _ => None,
+        };
+        if let Some(finite) = finite {
             self.account(start.elapsed().as_secs_f64());
             return self.accept(finite, step);
         }
@@ -141,8 +152,9 @@ impl Loaded {
 
     /// Brings structure and list up to date with the positions of `step`.
     pub fn prepare(&mut self, step: u64) {
+        self.sparse.found = false;
         if self.plan.method == Method::Cluster {
-            return self.prepare_clusters();
+            return self.prepare_clusters(step);
         }
         if self.plan.method == Method::RtList {
             if self.list.is_fresh(&self.state, &self.physics) {
@@ -152,7 +164,8 @@ impl Loaded {
         }
         let motion = if self.upkeep.needs_motion() { self.motion() } else { Motion::default() };
         let action = self.upkeep.next(motion);
-        if action == Action::Build && self.sorted_at.is_none_or(|then| step >= then + reorder::INTERVAL) {
+        let due = action == Action::Build && self.reordering_is_due(step);
+        if due {
             if let Some(order) = reorder::order(self.plan.order, &self.state, &self.physics) {
                 self.state.reorder(&order);
                 self.results.reorder(&order);
@@ -166,6 +179,9 @@ impl Loaded {
             self.reference.set(&self.state);
         }
         self.list.invalidate();
+        if self.plan.method == Method::Cell {
+            self.find_sparse_pairs(due && self.plan.order != Order::None);
+        }
     }
 
     /// Books a query and tells the policy.

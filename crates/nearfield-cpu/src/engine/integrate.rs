@@ -10,7 +10,7 @@ use nearfield_core::{
 };
 use std::ops::Range;
 
-/// Particles that [`Integrator::start_many`] settles together.
+/// Particles that are looked at together for whether any has left the box or is too fast.
 const SETTLED: usize = 64;
 
 /// What changes of a particle in a step.
@@ -165,11 +165,15 @@ impl Integrator {
     /// Shortens the velocities of those that the limit concerns.
     fn limit_many(&self, [vx, vy, vz]: [&mut [f32]; 3]) {
         let slow = self.slow();
-        for ((x, y), z) in vx.iter_mut().zip(vy).zip(vz) {
-            if x.abs().max(y.abs()).max(z.abs()) > slow {
-                let mut p = Moving { position: [0.0; 3], velocity: [*x, *y, *z], image: [0; 3] };
-                self.limit(&mut p);
-                [*x, *y, *z] = p.velocity;
+        let is_fast = |v: &[f32]| v.iter().fold(false, |fast, v| fast | (v.abs() > slow));
+        let groups = vx.chunks_mut(SETTLED).zip(vy.chunks_mut(SETTLED)).zip(vz.chunks_mut(SETTLED));
+        for ((x, y), z) in groups.filter(|((x, y), z)| is_fast(x) | is_fast(y) | is_fast(z)) {
+            for ((x, y), z) in x.iter_mut().zip(y).zip(z) {
+                if x.abs().max(y.abs()).max(z.abs()) > slow {
+                    let mut p = Moving { position: [0.0; 3], velocity: [*x, *y, *z], image: [0; 3] };
+                    self.limit(&mut p);
+                    [*x, *y, *z] = p.velocity;
+                }
             }
         }
     }

@@ -11,7 +11,7 @@ use std::time::Instant;
 /// The structure of a method.
 pub(super) enum Index {
     Brute(Brute),
-    Grid(Grid),
+    Grid(Box<Grid>),
     Bvh(Box<Bvh>),
 }
 
@@ -19,7 +19,7 @@ impl Index {
     pub fn new(plan: &Plan) -> Self {
         let probe = match plan.method {
             Method::Brute => return Self::Brute(Brute::default()),
-            Method::Cell | Method::Cluster => return Self::Grid(Grid::default()),
+            Method::Cell | Method::Cluster => return Self::Grid(Box::default()),
             Method::RtList | Method::RtForces | Method::RtPerse | Method::RtBoxes => Probe::Point,
             Method::RtSpheres => Probe::Axes,
             Method::RtSquares => Probe::Edges,
@@ -38,7 +38,7 @@ impl Index {
     pub fn structure(&self) -> &dyn Structure {
         match self {
             Self::Brute(brute) => brute,
-            Self::Grid(grid) => grid,
+            Self::Grid(grid) => &**grid,
             Self::Bvh(bvh) => &**bvh,
         }
     }
@@ -65,7 +65,7 @@ pub(super) fn build_fresh(plan: &Plan, input: &Input) -> Box<dyn Structure> {
     index.build(input);
     match index {
         Index::Brute(brute) => Box::new(brute),
-        Index::Grid(grid) => Box::new(grid),
+        Index::Grid(grid) => grid,
         Index::Bvh(bvh) => bvh,
     }
 }

@@ -9,6 +9,7 @@ mod reorder;
 mod results;
 mod rt_list;
 mod run;
+mod sparse;
 mod state;
 mod thermostat;
 mod tolerance;

@@ -134,7 +134,8 @@ impl Loaded {
     }
 
     pub fn report(&self) -> Report {
-        let structure = self.upkeep.index.bytes() + self.list.bytes() + self.clusters.clusters.bytes();
+        let lists = self.list.bytes() + self.clusters.clusters.bytes() + self.sparse.pairs.bytes();
+        let structure = self.upkeep.index.bytes() + lists;
         let bytes =
             structure + self.state.bytes() + self.results.bytes() + self.scatter.bytes() + self.reference.bytes();
         Report { bytes: bytes as u64, structure_bytes: structure as u64, ..self.report.clone() }

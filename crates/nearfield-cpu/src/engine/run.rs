@@ -39,10 +39,16 @@ impl Loaded {
             self.advance_clusters(&integrator, from, steps, quantities)?;
         } else {
             for step in from + 1..=from + steps {
-                self.start(&integrator, step)?;
+                if step == from + 1 || rescales {
+                    self.start(&integrator, step)?;
+                } else {
+                    self.finish_and_start(&integrator, step)?;
+                }
                 let wanted = if step == from + steps { quantities } else { Quantities::FORCES };
                 self.evaluate(wanted, step)?;
-                self.finish(&integrator);
+                if step == from + steps || rescales {
+                    self.finish(&integrator);
+                }
                 if rescales {
                     thermostat::rescale(self, dynamics, step);
                 }
@@ -94,13 +100,26 @@ impl Loaded {
     }
 
     pub(super) fn start(&mut self, integrator: &Integrator, step: u64) -> Result<()> {
+        self.move_all(integrator, step, false)
+    }
+
+    /// Ends the step before `step` and begins this one, in one pass.
+    pub(super) fn finish_and_start(&mut self, integrator: &Integrator, step: u64) -> Result<()> {
+        self.move_all(integrator, step, true)
+    }
+
+    /// Begins `step`, after the end of the one before where that is due.
+    fn move_all(&mut self, integrator: &Integrator, step: u64, finish: bool) -> Result<()> {
         let start = Instant::now();
         let watch = NonFiniteWatch::default();
         let force = &self.results.force;
         if integrator.has_fast_path() {
-            self.state.start_many(integrator, force, &watch);
+            self.state.start_many(integrator, force, &watch, finish);
         } else {
             self.state.for_each_moving(|i, p, kind, id| {
+                if finish {
+                    integrator.finish(p, force.get(i), kind);
+                }
                 integrator.start(p, force.get(i), kind, id, step);
                 watch.see(p.position, id);
             });
@@ -136,8 +155,9 @@ impl State {
         Moving { position: self.position.get(i), velocity: self.velocity.get(i), image: self.image[i] }
     }
 
-    /// First half kick and drift of all particles, where the integrator has a fast path.
-    fn start_many(&mut self, integrator: &Integrator, force: &Vec3s, watch: &NonFiniteWatch) {
+    /// First half kick and drift of all particles, after the second half kick of the step before where that is due,
+    /// where the integrator has a fast path.
+    fn start_many(&mut self, integrator: &Integrator, force: &Vec3s, watch: &NonFiniteWatch, finish: bool) {
         let Self { position, velocity, image, kind, id, .. } = self;
         let [x, y, z] = position.axes_mut().map(|axis| axis.par_chunks_mut(CHUNK));
         let [vx, vy, vz] = velocity.axes_mut().map(|axis| axis.par_chunks_mut(CHUNK));
@@ -161,6 +181,9 @@ impl State {
                     image[k] = p.image;
                 }
             };
+            if finish {
+                integrator.kick_many([&mut *vx, &mut *vy, &mut *vz], force, kind);
+            }
             integrator.start_many([x, y, z], [vx, vy, vz], force, kind, settle);
         });
     }

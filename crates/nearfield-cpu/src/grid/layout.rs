@@ -3,9 +3,13 @@
 use super::PENCIL_OCCUPANCY;
 use super::classes::Class;
 use super::survey::Bulk;
+use crate::LANES;
 
 /// Fewest particles to a pencil on average, which bounds memory where particles cluster.
 const LEAST_PER_PENCIL: f64 = 8.0;
+
+/// Part of a pencil that may lack where their number is chosen: a whole number stays so while particles move a little.
+const MARGIN: f64 = 0.01;
 
 /// A row of cells along x. What its fields say of space is taken from its particles, so nothing is lost by rounding.
 #[derive(Clone, Copy, Debug, Default)]
@@ -57,6 +61,19 @@ impl Layout {
         self.first + self.coordinate(1, z) * self.n[0] + self.coordinate(0, y)
     }
 
+    /// The pencils of points, as [`Layout::pencil_of`].
+    #[inline(always)]
+    pub fn pencils_of(&self, y: &[f32; LANES], z: &[f32; LANES]) -> [u32; LANES] {
+        let (first, [ny, nz]) = (self.first as i32, self.n.map(|n| n as i32));
+        let mut pencils = [0; LANES];
+        for k in 0..LANES {
+            let along_y = (((y[k] - self.lo[0]) * self.per_length[0]) as i32).clamp(0, ny - 1);
+            let along_z = (((z[k] - self.lo[1]) * self.per_length[1]) as i32).clamp(0, nz - 1);
+            pencils[k] = (first + along_z * ny + along_y) as u32;
+        }
+        pencils
+    }
+
     /// Number of pencils.
     pub fn len(&self) -> usize {
         self.n[0] * self.n[1]
@@ -69,8 +86,10 @@ pub(super) fn plan(classes: &[Class], bulk: &Bulk, out: &mut Vec<Layout>) {
     out.clear();
     let mut first = 0;
     for class in classes {
-        let width = pencil_width(class.n as f64, bulk.clustering, lengths);
-        let n = [1, 2].map(|axis| ((lengths[axis] / width) as usize).max(1));
+        // Measured of other samples clustering differs a little, and with other pencils all particles are out of order.
+        let clustering = (0.5 * (2.0 * bulk.clustering.log2()).round()).exp2();
+        let width = pencil_width(class.n as f64, clustering, lengths);
+        let n = [1, 2].map(|axis| ((lengths[axis] / width + MARGIN) as usize).max(1));
         let layout = Layout {
             limit: class.limit,
             largest: class.largest,

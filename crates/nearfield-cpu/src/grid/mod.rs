@@ -1,7 +1,7 @@
 //! The cell grid: pencils of cells over bins of similar radius.
 //!
-//! Space is cut along y and z into square *pencils*; the particles of a pencil are ordered along x by fine *cells* and
-//! lie next to each other in memory. What a group of queries can reach in one pencil is therefore one run of slots,
+//! Space is cut along y and z into square *pencils*; the particles of a pencil lie next to each other in memory, sorted
+//! along x and divided into fine *cells*. What a group of queries can reach in one pencil is therefore one run of slots,
 //! found by two look-ups: the reach along x is `sqrt(r² - d²)`, with d the distance from the group to the pencil.
 //!
 //! - Pencil widths follow the particles, never the radius: about [`PENCIL_OCCUPANCY`] particles to a cube of that
@@ -16,14 +16,17 @@
 
 mod classes;
 mod layout;
+mod order;
+mod pencils;
 mod rows;
 mod sort;
 mod survey;
 
 use crate::{GroupBox, Input, InputRadii, Run, Slots, Structure};
 use layout::{Layout, Pencil};
+pub(crate) use pencils::NearPencil;
 use std::ops::Range;
-use survey::Bounds;
+use survey::{Bounds, Bulk};
 
 /// Particles to a cube as wide as a pencil.
 const PENCIL_OCCUPANCY: f64 = 8.0;
@@ -53,6 +56,7 @@ pub struct Grid {
     /// Most particles in a group.
     group_size: usize,
     bounds: Bounds,
+    bulk: Bulk,
     /// Largest magnitude of a coordinate, images included: what rounding errors scale with.
     extent: f32,
     /// Period of each axis, zero where it has none.
@@ -77,6 +81,7 @@ impl Grid {
             groups: Vec::new(),
             group_size: group_size.max(1),
             bounds: Bounds::default(),
+            bulk: Bulk::default(),
             extent: 0.0,
             period: [0.0; 3],
             scratch: sort::Scratch::default(),
@@ -89,23 +94,23 @@ impl Grid {
         self.period = std::array::from_fn(|axis| if input.sim_box.is_periodic(axis) { lengths[axis] } else { 0.0 });
         self.bounds = Bounds::of(input);
         self.extent = largest(self.bounds.lo).max(largest(self.bounds.hi)) + largest(self.period);
-        let bulk = survey::Bulk::of(input, &self.bounds);
+        self.bulk = Bulk::of(input, &self.bounds);
         let classes = match input.radii {
             InputRadii::Uniform(_) => classes::single(input.len()),
-            InputRadii::PerParticle(radii) => classes::divide(radii, &bulk),
+            InputRadii::PerParticle(radii) => classes::divide(radii, &self.bulk),
         };
-        layout::plan(&classes, &bulk, &mut self.layouts);
+        layout::plan(&classes, &self.bulk, &mut self.layouts);
         self.sort(input);
     }
 
-    /// Number of pencils.
-    pub(crate) fn n_pencils(&self) -> usize {
-        self.pencils.len().saturating_sub(1)
+    /// Neighbours of a particle within `radius`, as the density that it sees lets expect.
+    pub(crate) fn expected_neighbors(&self, radius: f32) -> f64 {
+        self.bulk.n as f64 * self.bulk.share_within(f64::from(radius))
     }
 
-    /// The slots of pencil `p`.
-    pub(crate) fn pencil_slots(&self, p: usize) -> Range<usize> {
-        self.pencils[p].slots as usize..self.pencils[p + 1].slots as usize
+    /// The particles in the order of slots: by pencil, and along x in each.
+    pub(crate) fn order(&self) -> &[u32] {
+        &self.slots.particle[..self.slots.len()]
     }
 
     /// Bytes held, buffers of the build included.

@@ -14,7 +14,7 @@ impl Pencil {
 
     /// Squared distance from a group to the particles' bounds across x.
     #[inline(always)]
-    fn distance2(&self, lo: [f32; 3], hi: [f32; 3]) -> f32 {
+    pub(super) fn distance2(&self, lo: [f32; 3], hi: [f32; 3]) -> f32 {
         let dy = (self.y[0] - hi[1]).max(lo[1] - self.y[1]).max(0.0);
         let dz = (self.z[0] - hi[2]).max(lo[2] - self.z[1]).max(0.0);
         dy * dy + dz * dz
@@ -39,7 +39,19 @@ impl Grid {
         let extent = self.extent.max(largest(group.lo)).max(largest(group.hi));
         let farthest = self.layouts.iter().fold(group.radius, |r, layout| r.max(layout.largest));
         let farthest = conservative_range(farthest, extent);
-        let [along_x, along_y, along_z] = std::array::from_fn(|axis| self.images_in_reach(axis, group, farthest));
+        self.for_each_image(group, farthest, |image, bounds| {
+            for layout in &self.layouts {
+                let reach = conservative_range(group.radius.max(layout.largest), extent);
+                self.find_rows_of_class(layout, bounds, reach, image, from, out);
+            }
+        });
+    }
+
+    /// Calls `with` for each image whose particles may be within `reach` of the group, and the corners of the group as
+    /// seen from there. The image 0 comes first.
+    #[inline(always)]
+    pub(super) fn for_each_image(&self, group: &GroupBox, reach: f32, mut with: impl FnMut([i8; 3], [[f32; 3]; 2])) {
+        let [along_x, along_y, along_z] = std::array::from_fn(|axis| self.images_in_reach(axis, group, reach));
         for z in along_z.iter() {
             for y in along_y.iter() {
                 for x in along_x.iter() {
@@ -48,10 +60,7 @@ impl Grid {
                     let shift: [f32; 3] = std::array::from_fn(|a| f32::from(image[a]) * self.period[a]);
                     let lo = std::array::from_fn(|axis| group.lo[axis] - shift[axis]);
                     let hi = std::array::from_fn(|axis| group.hi[axis] - shift[axis]);
-                    for layout in &self.layouts {
-                        let reach = conservative_range(group.radius.max(layout.largest), extent);
-                        self.find_rows_of_class(layout, [lo, hi], reach, image, from, out);
-                    }
+                    with(image, [lo, hi]);
                 }
             }
         }

@@ -1,32 +1,51 @@
-//! The build: a stable two-level counting sort, first by pencil, then by cell within each pencil.
+//! The build: particles are sorted by pencil, and those of a pencil along x (`order.rs`).
 //!
-//! Stability makes the order of slots independent of the number of threads.
+//! Particles mostly come in nearly this order, for they were put into it some steps ago. So consecutive particles of one
+//! pencil are counted and copied as wholes. Particles in no order go to their pencils one by one, as records, so that there
+//! is but one place to write to. The order of slots does not depend on the number of threads: particles of a pencil
+//! come to it by index, and stay so where their x is the same.
 
 use super::layout::{Layout, Pencil};
+use super::order::{Record, Sorting, range};
 use super::{CELL_OCCUPANCY, Grid, classes};
+use crate::lanes::{Isa, Kernel, Lanes};
+use crate::parallel::Scattered;
 use crate::{Input, LANES, Slots};
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
+use std::ops::Range;
 
 /// Fewest particles worth a task of their own.
 const TASK: usize = 4096;
 
-/// Position bits and index of a particle, in pencil order. Atomic because threads write to interleaved places.
-type Record = [AtomicU32; 4];
+/// Tasks for each thread.
+const TASKS_PER_THREAD: usize = 4;
+
+/// Particles to a stretch from which on they are in some order.
+const ORDERED: usize = 4;
+
+/// Consecutive particles of one pencil, up to `end`.
+#[derive(Clone, Copy, Debug, Default)]
+struct Stretch {
+    pencil: u32,
+    end: u32,
+}
 
 /// Buffers of the build.
 #[derive(Debug, Default)]
 pub(super) struct Scratch {
-    /// Pencil of each particle.
-    keys: Vec<u32>,
+    /// The stretches of each task.
+    stretches: Vec<Vec<Stretch>>,
     /// For each task, where its next particle of each pencil goes.
     places: Vec<u32>,
+    /// Particles in pencils; empty where they are copied to their slots at once.
     records: Vec<Record>,
 }
 
 impl Scratch {
     pub fn bytes(&self) -> usize {
-        4 * (self.keys.capacity() + self.places.capacity()) + size_of::<Record>() * self.records.capacity()
+        let stretches = self.stretches.iter().map(Vec::capacity).sum::<usize>();
+        let records = size_of::<Record>() * self.records.capacity();
+        4 * self.places.capacity() + size_of::<Stretch>() * stretches + records
     }
 }
 
@@ -35,33 +54,25 @@ impl Grid {
     pub(super) fn sort(&mut self, input: &Input) {
         let n_pencils = self.layouts.iter().map(Layout::len).sum::<usize>();
         // Histograms of all tasks together stay below the particles, where there are more than one.
-        let n_tasks = rayon::current_num_threads().min(input.len() / TASK.max(n_pencils)).max(1);
-        let per_task = input.len().div_ceil(n_tasks).max(1);
-        self.count(input, n_pencils, per_task);
+        let most = TASKS_PER_THREAD * rayon::current_num_threads();
+        let n_tasks = most.min(input.len() / TASK.max(n_pencils)).max(1);
+        self.count(input, n_pencils, n_tasks);
         self.place_pencils(n_pencils, input.len());
-        self.scatter(input, n_pencils, per_task);
+        self.scatter(input, n_pencils);
         self.sort_pencils(input);
     }
 
-    fn count(&mut self, input: &Input, n_pencils: usize, per_task: usize) {
-        let Scratch { keys, places, records } = &mut self.scratch;
-        let n = input.len();
-        keys.resize(n, 0);
-        records.resize_with(n, Record::default);
+    fn count(&mut self, input: &Input, n_pencils: usize, n_tasks: usize) {
+        let Scratch { stretches, places, .. } = &mut self.scratch;
+        stretches.resize_with(n_tasks, Vec::new);
         places.clear();
-        places.resize(n_pencils * n.div_ceil(per_task).max(1), 0);
-        let layouts = &self.layouts;
-        let limits: Vec<f32> = layouts.iter().map(|layout| layout.limit).collect();
-        let tasks = keys.par_chunks_mut(per_task).zip(places.par_chunks_mut(n_pencils));
-        tasks.enumerate().for_each(|(task, (keys, counts))| {
-            let [_, y, z] = input.position;
-            for (k, key) in keys.iter_mut().enumerate() {
-                let i = task * per_task + k;
-                let class = if limits.len() == 1 { 0 } else { classes::class_of(&limits, input.radius(i)) };
-                let pencil = layouts[class].pencil_of(y[i], z[i]);
-                *key = pencil as u32;
-                counts[pencil] += 1;
-            }
+        places.resize(n_pencils * n_tasks, 0);
+        let layouts = &self.layouts[..];
+        let limits: &[f32] = &layouts.iter().map(|layout| layout.limit).collect::<Vec<_>>();
+        let tasks = stretches.par_iter_mut().zip(places.par_chunks_mut(n_pencils)).with_max_len(1).enumerate();
+        tasks.for_each(|(task, (stretches, counts))| {
+            let particles = input.len() * task / n_tasks..input.len() * (task + 1) / n_tasks;
+            Isa::detect().run(Count { input, layouts, limits, particles, counts, stretches });
         });
     }
 
@@ -77,32 +88,53 @@ impl Grid {
             cell += (slot - self.pencils[p].slots).div_ceil(CELL_OCCUPANCY as u32);
         }
         self.pencils.push(Pencil { slots: slot, cells: cell, ..Pencil::default() });
-        self.cells.clear();
-        self.cells.resize(cell as usize + 1, n as u32);
+        self.cells.resize(cell as usize + 1, 0);
+        self.cells[cell as usize] = n as u32;
     }
 
-    fn scatter(&mut self, input: &Input, n_pencils: usize, per_task: usize) {
-        let Scratch { keys, places, records } = &mut self.scratch;
-        let records = &records[..];
-        let tasks = keys.par_chunks(per_task).zip(places.par_chunks_mut(n_pencils));
-        tasks.enumerate().for_each(|(task, (keys, places))| {
-            for (k, &key) in keys.iter().enumerate() {
-                let i = task * per_task + k;
-                let place = &mut places[key as usize];
-                let [x, y, z] = input.at(i).map(f32::to_bits);
-                for (field, value) in records[*place as usize].iter().zip([x, y, z, i as u32]) {
-                    field.store(value, Relaxed);
+    /// Puts particles into their pencils: into slots where they come in some order, else into records.
+    fn scatter(&mut self, input: &Input, n_pencils: usize) {
+        let n = input.len();
+        self.slots.resize(n, input);
+        let Slots { x, y, z, particle, .. } = &mut self.slots;
+        let (position, particle) = ([x, y, z].map(|axis| Scattered::new(axis)), Scattered::new(particle));
+        let Scratch { stretches, places, records } = &mut self.scratch;
+        let n_tasks = stretches.len();
+        let is_ordered = n >= ORDERED * stretches.iter().map(Vec::len).sum::<usize>();
+        records.resize(if is_ordered { 0 } else { n }, Record::default());
+        let records = Scattered::new(records);
+        let tasks = stretches.par_iter().zip(places.par_chunks_mut(n_pencils)).with_max_len(1).enumerate();
+        tasks.for_each(|(task, (stretches, places))| {
+            let mut begin = n * task / n_tasks;
+            for stretch in stretches {
+                let place = &mut places[stretch.pencil as usize];
+                let from = begin..stretch.end as usize;
+                let to = *place as usize..*place as usize + from.len();
+                // SAFETY: each task has places of its own for the particles of each pencil, as many as it has counted.
+                unsafe {
+                    if is_ordered {
+                        for (to_axis, axis) in position.iter().zip(input.position) {
+                            to_axis.range(to.clone()).copy_from_slice(&axis[from.clone()]);
+                        }
+                        for (particle, i) in particle.range(to.clone()).iter_mut().zip(from.clone()) {
+                            *particle = i as u32;
+                        }
+                    } else {
+                        for (record, i) in records.range(to.clone()).iter_mut().zip(from.clone()) {
+                            *record = Record { position: input.at(i), particle: i as u32 };
+                        }
+                    }
                 }
-                *place += 1;
+                *place = to.end as u32;
+                begin = from.end;
             }
         });
     }
 
     fn sort_pencils(&mut self, input: &Input) {
         let n = input.len();
-        self.slots.resize(n, input);
-        let n_tasks = (4 * rayon::current_num_threads()).min(n / TASK).max(1);
-        let mut rest = Block::new(&mut self.slots, &mut self.pencils, &mut self.cells, &mut self.scratch.records);
+        let n_tasks = (TASKS_PER_THREAD * rayon::current_num_threads()).min(n / TASK).max(1);
+        let mut rest = Block::new(&mut self.slots, &mut self.pencils, &mut self.cells, &self.scratch.records);
         let mut blocks = Vec::with_capacity(n_tasks);
         for task in 1..n_tasks {
             let block;
@@ -110,13 +142,70 @@ impl Grid {
             blocks.push(block);
         }
         blocks.push(rest);
-        let (layouts, group_size) = (&self.layouts, self.group_size);
-        blocks.par_iter_mut().for_each(|block| block.sort(input, layouts, group_size));
+        let (layouts, group_size) = (&self.layouts[..], self.group_size);
+        blocks.par_iter_mut().with_max_len(1).for_each(|block| {
+            Isa::detect().run(Sort { block, input, layouts, group_size });
+        });
         self.groups.clear();
         for block in &blocks {
             self.groups.extend_from_slice(&block.groups);
         }
         self.groups.push(n as u32);
+    }
+}
+
+/// Finds the stretches of some particles, and counts the particles of each pencil.
+struct Count<'a> {
+    input: &'a Input<'a>,
+    layouts: &'a [Layout],
+    limits: &'a [f32],
+    particles: Range<usize>,
+    counts: &'a mut [u32],
+    stretches: &'a mut Vec<Stretch>,
+}
+
+impl Kernel for Count<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) {
+        let Self { input, layouts, limits, particles, counts, stretches } = self;
+        let [_, y, z] = input.position.map(|axis| &axis[particles.clone()]);
+        let (mut len, mut begin, mut current) = (0, 0, u32::MAX);
+        for at in (0..y.len()).step_by(LANES) {
+            let n = LANES.min(y.len() - at);
+            let mut pencils = [current; LANES];
+            if let ([layout], Some(y), Some(z)) = (layouts, y[at..].first_chunk(), z[at..].first_chunk()) {
+                pencils = layout.pencils_of(y, z);
+            } else {
+                for k in 0..n {
+                    let i = particles.start + at + k;
+                    let class = if limits.len() == 1 { 0 } else { classes::class_of(limits, input.radius(i)) };
+                    pencils[k] = layouts[class].pencil_of(y[at + k], z[at + k]) as u32;
+                }
+            }
+            if lanes.ne_u(lanes.load_u(&pencils), lanes.splat_u(current)) == 0 {
+                continue;
+            }
+            if stretches.len() < len + LANES + 1 {
+                stretches.resize((2 * len).max(4 * LANES), Stretch::default());
+            }
+            for (k, &pencil) in pencils[..n].iter().enumerate() {
+                if pencil != current {
+                    if at + k > 0 {
+                        stretches[len] = Stretch { pencil: current, end: (particles.start + at + k) as u32 };
+                        counts[current as usize] += (at + k - begin) as u32;
+                        len += 1;
+                    }
+                    (begin, current) = (at + k, pencil);
+                }
+            }
+        }
+        stretches.truncate(len);
+        if current != u32::MAX {
+            stretches.push(Stretch { pencil: current, end: particles.end as u32 });
+            counts[current as usize] += (y.len() - begin) as u32;
+        }
     }
 }
 
@@ -142,7 +231,8 @@ struct Block<'a> {
     pencils: &'a mut [Pencil],
     end: Pencil,
     cells: &'a mut [u32],
-    records: &'a mut [Record],
+    /// Its particles, where they are not in slots yet.
+    records: &'a [Record],
     position: [&'a mut [f32]; 3],
     particle: &'a mut [u32],
     radius: &'a mut [f32],
@@ -151,12 +241,7 @@ struct Block<'a> {
 }
 
 impl<'a> Block<'a> {
-    fn new(
-        slots: &'a mut Slots,
-        pencils: &'a mut [Pencil],
-        cells: &'a mut [u32],
-        records: &'a mut [Record],
-    ) -> Block<'a> {
+    fn new(slots: &'a mut Slots, pencils: &'a mut [Pencil], cells: &'a mut [u32], records: &'a [Record]) -> Block<'a> {
         let (end, pencils) = pencils.split_last_mut().expect("there is a sentinel");
         Block {
             first_pencil: 0,
@@ -180,7 +265,7 @@ impl<'a> Block<'a> {
         let end = later.first().map_or(self.end, |p| *p);
         let n = (end.slots - begin.slots) as usize;
         let (cells, later_cells) = self.cells.split_at_mut((end.cells - begin.cells) as usize);
-        let (records, later_records) = self.records.split_at_mut(n);
+        let (records, later_records) = self.records.split_at(n.min(self.records.len()));
         let [x, y, z] = self.position.map(|axis| axis.split_at_mut(n));
         let (particle, later_particle) = self.particle.split_at_mut(n);
         let (radius, later_radius) = self.radius.split_at_mut(n.min(self.radius.len()));
@@ -211,92 +296,97 @@ impl<'a> Block<'a> {
         };
         (first, second)
     }
+}
 
-    fn sort(&mut self, input: &Input, layouts: &[Layout], group_size: usize) {
-        let Some(&begin) = self.pencils.first() else { return };
-        let mut cell_of = Vec::new();
-        for p in 0..self.pencils.len() {
-            let start = self.pencils[p];
-            let end = self.pencils.get(p + 1).map_or(self.end, |next| *next);
+/// Sorts the particles of each pencil of a block and divides them into cells and groups.
+struct Sort<'a, 'b> {
+    block: &'a mut Block<'b>,
+    input: &'a Input<'a>,
+    layouts: &'a [Layout],
+    group_size: usize,
+}
+
+impl Kernel for Sort<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, _: L) {
+        let Self { block, input, layouts, group_size } = self;
+        let Some(&begin) = block.pencils.first() else { return };
+        let mut sorting = Sorting::default();
+        for p in 0..block.pencils.len() {
+            let start = block.pencils[p];
+            let end = block.pencils.get(p + 1).map_or(block.end, |next| *next);
             if start.slots == end.slots {
                 continue;
             }
             let slots = (start.slots - begin.slots) as usize..(end.slots - begin.slots) as usize;
-            let records = &mut self.records[slots.clone()];
-            let pencil = measure(start, end, records);
-            self.pencils[p] = pencil;
-
-            let cells = &mut self.cells[(start.cells - begin.cells) as usize..(end.cells - begin.cells) as usize];
-            cells.fill(0);
-            let last = cells.len() - 1;
-            cell_of.clear();
-            cell_of.extend(records.iter_mut().map(|record| {
-                let x = f32::from_bits(*record[0].get_mut());
-                let cell = pencil.cell_of(x).min(last);
-                cells[cell] += 1;
-                cell as u32
-            }));
-            let mut running = start.slots;
-            for cell in cells.iter_mut() {
-                running += *cell;
-                *cell = running;
+            let [x, y, z] = &mut block.position;
+            let (x, y, z) = (&mut x[slots.clone()], &mut y[slots.clone()], &mut z[slots.clone()]);
+            let (position, particle) = ([&mut *x, &mut *y, &mut *z], &mut block.particle[slots.clone()]);
+            if block.records.is_empty() {
+                sorting.sort(position, particle);
+            } else {
+                sorting.sort_records(&block.records[slots.clone()], position, particle);
             }
-            // Each cell now holds its end. Filled from behind, it comes to hold its start.
-            for (record, &cell) in records.iter_mut().zip(&cell_of).rev() {
-                let cell = &mut cells[cell as usize];
-                *cell -= 1;
-                let slot = (*cell - begin.slots) as usize;
-                let [x, y, z, particle] = record.each_mut().map(|field| *field.get_mut());
-                self.position[0][slot] = f32::from_bits(x);
-                self.position[1][slot] = f32::from_bits(y);
-                self.position[2][slot] = f32::from_bits(z);
-                self.particle[slot] = particle;
-            }
-            for slot in slots.clone() {
-                let i = self.particle[slot] as usize;
-                if !self.radius.is_empty() {
-                    self.radius[slot] = input.radius(i);
-                }
-                if !self.kind.is_empty() {
-                    self.kind[slot] = input.kind[i];
+            let pencil = measure(start, end, [x, y, z]);
+            block.pencils[p] = pencil;
+            let cells = (start.cells - begin.cells) as usize..(end.cells - begin.cells) as usize;
+            divide_cells(x, &pencil, &mut block.cells[cells]);
+            let class = layouts.partition_point(|layout| layout.first <= block.first_pencil + p) - 1;
+            divide_groups(x, start.slots, group_size, layouts[class].group_length, &mut block.groups);
+            let particles = &block.particle[slots.clone()];
+            if !block.radius.is_empty() {
+                for (radius, &i) in block.radius[slots.clone()].iter_mut().zip(particles) {
+                    *radius = input.radius(i as usize);
                 }
             }
-            let class = layouts.partition_point(|layout| layout.first <= self.first_pencil + p) - 1;
-            let x = &self.position[0][slots];
-            divide_groups(x, start.slots, group_size, layouts[class].group_length, &mut self.groups);
+            if !block.kind.is_empty() {
+                for (kind, &i) in block.kind[slots].iter_mut().zip(particles) {
+                    *kind = input.kind[i as usize];
+                }
+            }
         }
     }
 }
 
-/// A pencil with the bounds of its particles and its division into cells.
-fn measure(start: Pencil, end: Pencil, records: &mut [Record]) -> Pencil {
-    let mut lo = [f32::MAX; 3];
-    let mut hi = [f32::MIN; 3];
-    for record in records {
-        for axis in 0..3 {
-            let value = f32::from_bits(*record[axis].get_mut());
-            lo[axis] = lo[axis].min(value);
-            hi[axis] = hi[axis].max(value);
-        }
-    }
-    let per_length = (end.cells - start.cells) as f32 / (hi[0] - lo[0]);
+/// A pencil with the bounds of its particles, which are sorted along x, and its division into cells.
+#[inline(always)]
+fn measure(start: Pencil, end: Pencil, [x, y, z]: [&[f32]; 3]) -> Pencil {
+    let (first, last) = (x[0], x[x.len() - 1]);
+    let per_length = (end.cells - start.cells) as f32 / (last - first);
     let cells_per_length = if per_length.is_finite() { per_length } else { 0.0 };
-    Pencil { x0: lo[0], cells_per_length, y: [lo[1], hi[1]], z: [lo[2], hi[2]], ..start }
+    Pencil { x0: first, cells_per_length, y: range(y), z: range(z), ..start }
+}
+
+/// Writes the first slot of each cell of a pencil, whose particles are sorted along x.
+#[inline(always)]
+fn divide_cells(x: &[f32], pencil: &Pencil, cells: &mut [u32]) {
+    let end = pencil.slots + x.len() as u32;
+    let last = cells.len() - 1;
+    cells.fill(end);
+    // From behind, so that the first slot of a cell is written last.
+    for (k, &x) in x.iter().enumerate().rev() {
+        cells[pencil.cell_of(x).min(last)] = pencil.slots + k as u32;
+    }
+    let mut next = end;
+    for cell in cells.iter_mut().rev() {
+        next = next.min(*cell);
+        *cell = next;
+    }
 }
 
 /// Appends the first slots of the groups of one pencil: even in size, and short along x.
+#[inline(always)]
 fn divide_groups(x: &[f32], first_slot: u32, most: usize, longest: f32, groups: &mut Vec<u32>) {
     let size = x.len().div_ceil(x.len().div_ceil(most));
     let mut begin = 0;
-    let (mut lo, mut hi) = (f32::MAX, f32::MIN);
-    for (k, &x) in x.iter().enumerate() {
-        let (new_lo, new_hi) = (lo.min(x), hi.max(x));
-        if k == 0 || k - begin == size || new_hi - new_lo > longest {
-            groups.push(first_slot + k as u32);
-            begin = k;
-            (lo, hi) = (x, x);
-        } else {
-            (lo, hi) = (new_lo, new_hi);
+    while begin < x.len() {
+        groups.push(first_slot + begin as u32);
+        let mut end = (begin + size).min(x.len());
+        while x[end - 1] - x[begin] > longest {
+            end -= 1;
         }
+        begin = end;
     }
 }

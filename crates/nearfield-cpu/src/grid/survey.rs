@@ -1,5 +1,6 @@
 //! Where the particles are: bounds of all, bounds of the bulk, and how clustered they are.
 
+use super::order::range;
 use crate::Input;
 use rayon::prelude::*;
 
@@ -17,14 +18,13 @@ impl Bounds {
             return Self::default();
         }
         let axis = |a: usize| {
-            let reduce = |x: &[f32]| x.iter().fold((f32::MAX, f32::MIN), |(lo, hi), &v| (lo.min(v), hi.max(v)));
             input.position[a]
                 .par_chunks(1 << 16)
-                .map(reduce)
-                .reduce(|| (f32::MAX, f32::MIN), |a, b| (a.0.min(b.0), a.1.max(b.1)))
+                .map(range)
+                .reduce(|| [f32::MAX, f32::MIN], |a, b| [a[0].min(b[0]), a[1].max(b[1])])
         };
         let ranges = [axis(0), axis(1), axis(2)];
-        Self { lo: ranges.map(|r| r.0), hi: ranges.map(|r| r.1) }
+        Self { lo: ranges.map(|r| r[0]), hi: ranges.map(|r| r[1]) }
     }
 }
 

@@ -1,0 +1,226 @@
+//! The order of the particles of one pencil: along x, those at the same x as they come.
+
+use crate::LANES;
+use std::cmp::Ordering;
+
+/// Descents to a particle that a pencil may have for its order to be repaired rather than made anew.
+const DESCENTS: f32 = 0.125;
+
+/// Moves for each particle after which insertion gives up.
+const MOVES: usize = 8;
+
+/// A particle on its way to its pencil.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C, align(16))]
+pub(super) struct Record {
+    pub position: [f32; 3],
+    pub particle: u32,
+}
+
+/// Buffers for one pencil after the other.
+#[derive(Default)]
+pub(super) struct Sorting {
+    position: [Vec<f32>; 3],
+    particle: Vec<u32>,
+    cell: Vec<u32>,
+    /// Where cells begin, and where their next particle goes.
+    places: Vec<u32>,
+    order: Vec<u32>,
+}
+
+impl Sorting {
+    /// Sorts particles along x.
+    #[inline(always)]
+    pub fn sort(&mut self, mut position: [&mut [f32]; 3], particle: &mut [u32]) {
+        let x = &*position[0];
+        let mut descents = 0u32;
+        for (x, next) in x.iter().zip(&x[1..]) {
+            descents += u32::from(next < x);
+        }
+        if descents == 0 || descents as f32 <= DESCENTS * x.len() as f32 && repair(&mut position, particle) {
+            return;
+        }
+        for (copy, axis) in self.position.iter_mut().zip(&position) {
+            copy.clear();
+            copy.extend_from_slice(axis);
+        }
+        self.particle.clear();
+        self.particle.extend_from_slice(particle);
+        self.sort_copies(position, particle);
+    }
+
+    /// Writes the particles of records where they belong, sorted along x.
+    #[inline(always)]
+    pub fn sort_records(&mut self, records: &[Record], position: [&mut [f32]; 3], particle: &mut [u32]) {
+        let [x, y, z] = &mut self.position;
+        for axis in [&mut *x, &mut *y, &mut *z] {
+            axis.resize(records.len(), 0.0);
+        }
+        self.particle.resize(records.len(), 0);
+        let copies = x.iter_mut().zip(y).zip(z).zip(&mut self.particle);
+        for ((((x, y), z), particle), record) in copies.zip(records) {
+            [*x, *y, *z] = record.position;
+            *particle = record.particle;
+        }
+        self.sort_copies(position, particle);
+    }
+
+    /// Writes the copies by cells of about one particle each, and sorted within them.
+    #[inline(always)]
+    fn sort_copies(&mut self, position: [&mut [f32]; 3], particle: &mut [u32]) {
+        let n = particle.len();
+        let x = &self.position[0][..];
+        let [lo, hi] = range(x);
+        let per_length = n as f32 / (hi - lo);
+        let per_length = if per_length.is_finite() { per_length } else { 0.0 };
+        self.cell.resize(n, 0);
+        for (cell, x) in self.cell.iter_mut().zip(x) {
+            *cell = ((x - lo) * per_length).min((n - 1) as f32) as u32;
+        }
+        self.places.clear();
+        self.places.resize(n + 1, 0);
+        for &cell in &self.cell {
+            self.places[cell as usize + 1] += 1;
+        }
+        let mut place = 0;
+        for places in &mut self.places {
+            place += *places;
+            *places = place;
+        }
+        self.order.resize(n, 0);
+        for (k, &cell) in self.cell.iter().enumerate() {
+            let place = &mut self.places[cell as usize];
+            self.order[*place as usize] = k as u32;
+            *place += 1;
+        }
+        sort_along(x, &mut self.order[..n]);
+        for (axis, copy) in position.into_iter().zip(&self.position) {
+            for (to, &k) in axis.iter_mut().zip(&self.order) {
+                *to = copy[k as usize];
+            }
+        }
+        for (to, &k) in particle.iter_mut().zip(&self.order) {
+            *to = self.particle[k as usize];
+        }
+    }
+}
+
+/// Least and largest.
+#[inline(always)]
+pub(super) fn range(values: &[f32]) -> [f32; 2] {
+    let (mut lo, mut hi) = ([f32::MAX; LANES], [f32::MIN; LANES]);
+    let (chunks, rest) = values.as_chunks::<LANES>();
+    let mut last = [rest.first().copied().unwrap_or(f32::MAX); LANES];
+    last[..rest.len()].copy_from_slice(rest);
+    let last = (!rest.is_empty()).then_some(&last);
+    for chunk in chunks.iter().chain(last) {
+        for k in 0..LANES {
+            // Not `min` and `max`, which are not vectorised for their treatment of NaN.
+            lo[k] = if chunk[k] < lo[k] { chunk[k] } else { lo[k] };
+            hi[k] = if chunk[k] > hi[k] { chunk[k] } else { hi[k] };
+        }
+    }
+    [lo.into_iter().fold(f32::MAX, f32::min), hi.into_iter().fold(f32::MIN, f32::max)]
+}
+
+/// Puts the few particles that are out of order along x into their places. False, with particles nearer to their places,
+/// where that takes too many moves.
+#[inline(always)]
+fn repair(position: &mut [&mut [f32]; 3], particle: &mut [u32]) -> bool {
+    let mut moves = MOVES * particle.len();
+    for k in 1..particle.len() {
+        let x = &*position[0];
+        let here = x[k];
+        if x[k - 1] <= here {
+            continue;
+        }
+        let mut at = k - 1;
+        while at > 0 && x[at - 1] > here {
+            at -= 1;
+        }
+        for axis in position.iter_mut() {
+            insert(axis, k, at);
+        }
+        insert(particle, k, at);
+        moves = moves.saturating_sub(k - at);
+        if moves == 0 {
+            return false;
+        }
+    }
+    true
+}
+
+/// Moves value `k` to place `at` before it, and those from there on by one.
+#[inline(always)]
+fn insert<T: Copy>(values: &mut [T], k: usize, at: usize) {
+    if k - at == 1 {
+        values.swap(k, at);
+    } else {
+        let value = values[k];
+        values.copy_within(at..k, at + 1);
+        values[at] = value;
+    }
+}
+
+/// Sorts `order`, nearly sorted as it is, by `x`.
+fn sort_along(x: &[f32], order: &mut [u32]) {
+    let mut moves = MOVES * order.len();
+    for k in 1..order.len() {
+        let (place, here) = (order[k], x[order[k] as usize]);
+        let mut at = k;
+        while at > 0 && x[order[at - 1] as usize] > here {
+            order[at] = order[at - 1];
+            at -= 1;
+        }
+        order[at] = place;
+        moves = moves.saturating_sub(k - at);
+        if moves == 0 {
+            let by_x = |a: u32, b: u32| x[a as usize].partial_cmp(&x[b as usize]).unwrap_or(Ordering::Equal);
+            order.sort_unstable_by(|&a, &b| by_x(a, b).then(a.cmp(&b)));
+            return;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sorted(x: &[f32]) -> Vec<u32> {
+        let mut axes = [x.to_vec(), x.iter().map(|x| 2.0 * x).collect(), x.iter().map(|x| 3.0 * x).collect()];
+        let mut particle: Vec<u32> = (0..x.len() as u32).collect();
+        let records: Vec<Record> = (0..x.len())
+            .map(|k| Record { position: axes.each_ref().map(|axis| axis[k]), particle: particle[k] })
+            .collect();
+        let (mut from_records, mut particle_from_records) = (axes.clone(), particle.clone());
+        let [a, b, c] = &mut axes;
+        Sorting::default().sort([a, b, c], &mut particle);
+        let [a, b, c] = &mut from_records;
+        Sorting::default().sort_records(&records, [a, b, c], &mut particle_from_records);
+        assert_eq!((&axes, &particle), (&from_records, &particle_from_records));
+        for (k, &i) in particle.iter().enumerate() {
+            let x = x[i as usize];
+            assert_eq!(axes.each_ref().map(|axis| axis[k]), [x, 2.0 * x, 3.0 * x]);
+        }
+        particle
+    }
+
+    #[test]
+    fn any_order_becomes_that_of_x_and_then_of_arrival() {
+        let n = 300;
+        let random = |k: usize| (k * 7919 % 311) as f32;
+        let cases: [Vec<f32>; 6] = [
+            (0..n).map(|k| k as f32).collect(),
+            (0..n).map(|k| -(k as f32)).collect(),
+            (0..n).map(random).collect(),
+            (0..n).map(|k| if k % 50 == 49 { random(k) } else { k as f32 }).collect(),
+            (0..n).map(|k| if k == 17 { 1e30 } else { random(k) }).collect(),
+            vec![5.0; n],
+        ];
+        for x in cases {
+            let mut expected: Vec<u32> = (0..n as u32).collect();
+            expected.sort_by(|&a, &b| x[a as usize].total_cmp(&x[b as usize]));
+            assert_eq!(sorted(&x), expected, "{x:?}");
+        }
+    }
+}
