@@ -42,7 +42,8 @@ pub(crate) trait Lanes: Copy {
     /// a > b, for values below 2³¹.
     fn gt_u(self, a: Self::U, b: Self::U) -> u16;
 
-    /// Stores the lanes of the mask next to each other, and anything after them.
+    /// Stores the lanes of the mask next to each other. After them comes what was there, any lane, or zero: the kernels
+    /// read it, and it must be finite where all of these are.
     fn compress(self, mask: u16, value: Self::F, to: &mut [f32; 16]);
     /// As [`Lanes::compress`], for u32.
     fn compress_u(self, mask: u16, value: Self::U, to: &mut [u32; 16]);

@@ -13,9 +13,9 @@ const BITS: [[u32; 4]; 4] = {
     [[a, 2 * a, 4 * a, 8 * a], [b, 2 * b, 4 * b, 8 * b], [c, 2 * c, 4 * c, 8 * c], [d, 2 * d, 4 * d, 8 * d]]
 };
 
-/// For each mask of four lanes, the permutation of bytes that brings its lanes to the front.
+/// For each mask of four lanes, the permutation of bytes that brings its lanes to the front, with zeros after them.
 static FRONT: [[u8; 16]; 16] = {
-    let mut table = [[0; 16]; 16];
+    let mut table = [[u8::MAX; 16]; 16];
     let mut mask = 0;
     while mask < 16 {
         let (mut byte, mut at) = (0, 0);

@@ -79,6 +79,32 @@ fn every_instruction_set_computes_the_same_bits() {
     }
 }
 
+struct Compressed<'a>(&'a [f32; 16], u16);
+
+impl Kernel for Compressed<'_> {
+    type Output = [f32; 16];
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, l: L) -> [f32; 16] {
+        let mut out = [0.0; 16];
+        l.compress(self.1, l.load(self.0), &mut out);
+        out
+    }
+}
+
+#[test]
+fn what_follows_compressed_lanes_is_made_of_whole_lanes_or_zero() {
+    // Each byte but the highest would give NaN where it is repeated.
+    let values: [f32; 16] = std::array::from_fn(|k| f32::from_bits(0x3fff_ffff + ((k as u32) << 24)));
+    for isa in Isa::available() {
+        for mask in [0, 1, 0x8000, 0x5aa5, 0x00ff, 0xff00, 0x1248] {
+            for x in isa.run(Compressed(&values, mask)) {
+                assert!(x == 0.0 || values.contains(&x), "{isa:?}: {x:e} with mask {mask:04x}");
+            }
+        }
+    }
+}
+
 /// Reciprocals of sixteen values where a mask says so.
 struct Reciprocals<'a>(&'a [f32; 16], u16);
 
