@@ -4,6 +4,7 @@
 //! Every step that compiles uses the release profile: dependencies are then compiled once for all of them, and the
 //! kernels, which take a minute, once for tests and the smoke run.
 
+mod aarch64;
 mod checks;
 mod command;
 mod gpu_test;
@@ -43,6 +44,7 @@ const STEPS: &[Step] = &[
     Step { name: "clippy", about: "lints, warnings denied", ci: Some(&[]), run: Plain(checks::clippy) },
     Step { name: "doc", about: "documentation, warnings denied", ci: Some(&[]), run: Plain(checks::doc) },
     Step { name: "test", about: "all tests", ci: Some(&[]), run: Plain(checks::test) },
+    Step { name: "aarch64", about: aarch64::ABOUT, ci: Some(&[]), run: Plain(aarch64::run_step) },
     Step { name: "smoke", about: "a short run of the melt example", ci: Some(&[]), run: Plain(checks::smoke) },
     Step { name: "gpu-test", about: "a bundle for a machine with a GPU", ci: None, run: Plain(gpu_test::run_step) },
 ];

@@ -1,24 +1,8 @@
 //! Lanes as two AVX2 registers.
 
-use super::{Kernel, Lanes};
-use pulp::x86::V3;
-use pulp::{NullaryFnOnce, cast};
+use super::Lanes;
+use pulp::{cast, x86::V3};
 use std::arch::x86_64::{__m256, __m256i, _CMP_LT_OQ};
-
-/// A kernel to run under AVX2 and FMA.
-pub(super) struct OnAvx2<K> {
-    pub lanes: V3,
-    pub kernel: K,
-}
-
-impl<K: Kernel> NullaryFnOnce for OnAvx2<K> {
-    type Output = K::Output;
-
-    #[inline(always)]
-    fn call(self) -> K::Output {
-        self.kernel.run(self.lanes)
-    }
-}
 
 /// For each mask of eight lanes, the permutation that brings its lanes to the front.
 static FRONT: [[u32; 8]; 256] = {

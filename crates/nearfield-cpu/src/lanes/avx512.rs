@@ -1,24 +1,8 @@
 //! Lanes as one AVX-512 register.
 
-use super::{Kernel, Lanes};
-use pulp::x86::V4;
-use pulp::{NullaryFnOnce, cast};
+use super::Lanes;
+use pulp::{cast, x86::V4};
 use std::arch::x86_64::{__m256, __m512, __m512i, _CMP_LT_OQ};
-
-/// A kernel to run under AVX-512.
-pub(super) struct OnAvx512<K> {
-    pub lanes: V4,
-    pub kernel: K,
-}
-
-impl<K: Kernel> NullaryFnOnce for OnAvx512<K> {
-    type Output = K::Output;
-
-    #[inline(always)]
-    fn call(self) -> K::Output {
-        self.kernel.run(self.lanes)
-    }
-}
 
 /// In each quarter, the sums of two pairs of `a` and of two of `b`.
 #[inline(always)]

@@ -8,6 +8,8 @@
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
+#[cfg(target_arch = "aarch64")]
+mod neon;
 mod portable;
 
 pub(crate) use portable::Portable;
@@ -40,7 +42,8 @@ pub(crate) trait Lanes: Copy {
     /// a > b, for values below 2³¹.
     fn gt_u(self, a: Self::U, b: Self::U) -> u16;
 
-    /// Stores the lanes of the mask next to each other, and anything after them.
+    /// Stores the lanes of the mask next to each other. After them comes what was there, any lane, or zero: the kernels
+    /// read it, and it must be finite where all of these are.
     fn compress(self, mask: u16, value: Self::F, to: &mut [f32; 16]);
     /// As [`Lanes::compress`], for u32.
     fn compress_u(self, mask: u16, value: Self::U, to: &mut [u32; 16]);
@@ -88,12 +91,29 @@ pub(crate) enum Isa {
     Avx512(pulp::x86::V4),
     #[cfg(target_arch = "x86_64")]
     Avx2(pulp::x86::V3),
+    #[cfg(target_arch = "aarch64")]
+    Neon(pulp::aarch64::Neon),
     Portable,
 }
 
+/// A kernel and the lanes to run it on, for pulp to compile with their instruction set.
+struct OnLanes<L, K> {
+    lanes: L,
+    kernel: K,
+}
+
+impl<L: Lanes, K: Kernel> pulp::NullaryFnOnce for OnLanes<L, K> {
+    type Output = K::Output;
+
+    #[inline(always)]
+    fn call(self) -> K::Output {
+        self.kernel.run(self.lanes)
+    }
+}
+
 impl Isa {
-    /// The best one, or the one that the environment variable NEARFIELD_SIMD names ("AVX-512", "AVX2", "portable")
-    /// where the machine has it: for comparing them.
+    /// The best one, or the one that the environment variable NEARFIELD_SIMD names ("AVX-512", "AVX2", "NEON",
+    /// "portable") where the machine has it: for comparing them.
     pub fn detect() -> Self {
         static CHOSEN: OnceLock<Isa> = OnceLock::new();
         *CHOSEN.get_or_init(|| {
@@ -110,6 +130,8 @@ impl Isa {
             Self::Avx512(_) => "AVX-512",
             #[cfg(target_arch = "x86_64")]
             Self::Avx2(_) => "AVX2",
+            #[cfg(target_arch = "aarch64")]
+            Self::Neon(_) => "NEON",
             Self::Portable => "portable",
         }
     }
@@ -118,8 +140,10 @@ impl Isa {
     pub fn available() -> impl Iterator<Item = Self> {
         #[cfg(target_arch = "x86_64")]
         let vector = [pulp::x86::V4::try_new().map(Self::Avx512), pulp::x86::V3::try_new().map(Self::Avx2)];
-        #[cfg(not(target_arch = "x86_64"))]
-        let vector = [None; 2];
+        #[cfg(target_arch = "aarch64")]
+        let vector = [pulp::aarch64::Neon::try_new().map(Self::Neon)];
+        #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+        let vector: [Option<Self>; 0] = [];
         vector.into_iter().flatten().chain([Self::Portable])
     }
 
@@ -127,9 +151,11 @@ impl Isa {
     pub fn run<K: Kernel>(self, kernel: K) -> K::Output {
         match self {
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512(v4) => v4.vectorize(avx512::OnAvx512 { lanes: v4, kernel }),
+            Self::Avx512(v4) => v4.vectorize(OnLanes { lanes: v4, kernel }),
             #[cfg(target_arch = "x86_64")]
-            Self::Avx2(v3) => v3.vectorize(avx2::OnAvx2 { lanes: v3, kernel }),
+            Self::Avx2(v3) => v3.vectorize(OnLanes { lanes: v3, kernel }),
+            #[cfg(target_arch = "aarch64")]
+            Self::Neon(neon) => neon.vectorize(OnLanes { lanes: neon, kernel }),
             Self::Portable => kernel.run(Portable),
         }
     }

@@ -30,6 +30,26 @@ impl Kernel for Everything<'_> {
         }
         let sums = l.sum_halves([b, c, l.mul(b, b)], [l.sub(b, c), b, l.load(&out)]);
         bits.extend(sums.as_flattened().iter().map(|x| x.to_bits()));
+        let halves: &[[f32; 8]] = self.b.as_chunks().0;
+        let index = [7, 0, 3, 3, 1, 6, 5, 2];
+        let (odd, less) = (l.mask(0xaaaa), l.less(a, b));
+        for value in [
+            l.min(a, b),
+            l.min(b, a),
+            l.sqrt(l.mul(b, b)),
+            l.keep(odd, b),
+            l.keep(l.and(odd, less), b),
+            l.keep(l.mask(0x8421), l.load(&[f32::INFINITY; 16])),
+            l.twice(&halves[0]),
+            l.halves(self.b[3], self.b[4]),
+            l.look_up(&halves[0], &halves[1], &index),
+        ] {
+            l.compress(u16::MAX, value, &mut out);
+            bits.extend(out.iter().map(|x| if x.is_nan() { 1 } else { x.to_bits() }));
+        }
+        let mut eight = halves[1];
+        l.add_halves(b, &mut eight);
+        bits.extend(eight.map(f32::to_bits));
         let mut out_u = [0; 16];
         l.compress_u(u16::MAX, v, &mut out_u);
         bits.extend(out_u);
@@ -56,5 +76,74 @@ fn every_instruction_set_computes_the_same_bits() {
     assert_eq!(expected.1[0] >> 5 & 1, 0, "NaN is not less than anything");
     for isa in Isa::available() {
         assert_eq!(run(isa), expected, "{isa:?}");
+    }
+}
+
+struct Compressed<'a>(&'a [f32; 16], u16);
+
+impl Kernel for Compressed<'_> {
+    type Output = [f32; 16];
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, l: L) -> [f32; 16] {
+        let mut out = [0.0; 16];
+        l.compress(self.1, l.load(self.0), &mut out);
+        out
+    }
+}
+
+#[test]
+fn what_follows_compressed_lanes_is_made_of_whole_lanes_or_zero() {
+    // Each byte but the highest would give NaN where it is repeated.
+    let values: [f32; 16] = std::array::from_fn(|k| f32::from_bits(0x3fff_ffff + ((k as u32) << 24)));
+    for isa in Isa::available() {
+        for mask in [0, 1, 0x8000, 0x5aa5, 0x00ff, 0xff00, 0x1248] {
+            for x in isa.run(Compressed(&values, mask)) {
+                assert!(x == 0.0 || values.contains(&x), "{isa:?}: {x:e} with mask {mask:04x}");
+            }
+        }
+    }
+}
+
+/// Reciprocals of sixteen values where a mask says so.
+struct Reciprocals<'a>(&'a [f32; 16], u16);
+
+impl Kernel for Reciprocals<'_> {
+    type Output = [f32; 16];
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, l: L) -> [f32; 16] {
+        let mut out = [0.0; 16];
+        l.compress(u16::MAX, l.reciprocal(l.mask(self.1), l.load(self.0)), &mut out);
+        out
+    }
+}
+
+#[test]
+fn reciprocals_are_good_to_two_units_in_the_last_place() {
+    // Mantissas of all sizes: a prime apart.
+    let values = (0x3f80_0000..0x4000_0000).step_by(251).flat_map(|bits| {
+        let mantissa = f32::from_bits(bits);
+        [mantissa, mantissa * 1e-12, mantissa * 1e12]
+    });
+    let values: Vec<f32> = values.collect();
+    for isa in Isa::available() {
+        for sixteen in values.as_chunks().0 {
+            for (y, a) in isa.run(Reciprocals(sixteen, u16::MAX)).into_iter().zip(sixteen) {
+                let apart = y.to_bits().abs_diff(a.recip().to_bits());
+                assert!(apart <= 2, "{isa:?}: {a:e} gives {y:e}, {apart} units from the reciprocal");
+            }
+        }
+    }
+}
+
+#[test]
+fn reciprocals_outside_the_mask_are_zero_even_of_what_has_none() {
+    let mut values = [f32::NAN; 16];
+    values[..4].copy_from_slice(&[4.0, 0.0, f32::INFINITY, f32::NEG_INFINITY]);
+    for isa in Isa::available() {
+        let [inside, outside @ ..] = isa.run(Reciprocals(&values, 1));
+        assert!((inside - 0.25).abs() < 1e-6, "{isa:?}: {inside}");
+        assert_eq!(outside.map(f32::to_bits), [0; 15], "{isa:?}");
     }
 }

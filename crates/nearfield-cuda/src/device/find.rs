@@ -64,8 +64,9 @@ fn hyphenated(uuid: sys::CUuuid) -> String {
         if matches!(at, 0 | 4 | 6 | 8 | 10) {
             text.push('-');
         }
-        // The element type is the platform's char.
-        text += &format!("{:02x}", *byte as u8);
+        // The element type is the platform's char, which has a sign or not.
+        let [byte] = byte.to_ne_bytes();
+        text += &format!("{byte:02x}");
     }
     text
 }
