@@ -248,7 +248,7 @@ mod tests {
         tuner.guess(0.005);
         for _ in 0..20 {
             let steps = (150.0 * tuner.skin()) as u64;
-            tuner.record(ListUse { steps, sorting: 100.0, listing: 0.0, reading: 0.0 });
+            tuner.record(ListUse { steps: steps as f64, sorting: 100.0, listing: 0.0, reading: 0.0 });
         }
         assert!(tuner.skin() > 1.0, "{}", tuner.skin());
     }
@@ -275,7 +275,7 @@ mod tests {
         assert!((0.5..0.7).contains(&tuner.skin()), "{}", tuner.skin());
         tuner.guess(0.0);
         assert_eq!(tuner.skin(), 2.5 / 16.0);
-        tuner.record(ListUse { steps: 10, sorting: 80.0, listing: 40.0, reading: 4.0 });
+        tuner.record(ListUse { steps: 10.0, sorting: 80.0, listing: 40.0, reading: 4.0 });
         let skin = tuner.skin();
         tuner.guess(0.02);
         assert_eq!(tuner.skin(), skin, "what was learned counts more");
@@ -285,7 +285,7 @@ mod tests {
     fn a_fixed_skin_stays_and_none_is_larger_than_there_is_room_for() {
         let mut tuner = SkinTuner::new(Skin::Fixed(0.4), 2.5, 100.0);
         tuner.guess(1.0);
-        tuner.record(ListUse { steps: 1, sorting: 80.0, listing: 40.0, reading: 4.0 });
+        tuner.record(ListUse { steps: 1.0, sorting: 80.0, listing: 40.0, reading: 4.0 });
         assert_eq!(tuner.skin(), 0.4);
         assert!(!tuner.shrink());
         assert_eq!(SkinTuner::new(Skin::Fixed(0.4), 2.5, 0.3).skin(), 0.3);
