@@ -86,6 +86,23 @@ fn lognormal(n: usize) -> Vec<f32> {
     std::iter::repeat_with(|| distribution.sample(&mut rng)).filter(|r| (1.0..330.0).contains(r)).take(n).collect()
 }
 
+/// The unit sphere around the middle of a box of length 4.
+fn sphere(n: usize) -> impl Iterator<Item = [f32; 3]> {
+    let mut rng = Pcg64Mcg::seed_from_u64(6);
+    let normal = Normal::new(0.0f32, 1.0).expect("sigma is positive");
+    (0..n).map(move |_| {
+        let p: [f32; 3] = std::array::from_fn(|_| normal.sample(&mut rng));
+        let length = p.iter().map(|x| x * x).sum::<f32>().sqrt();
+        p.map(|x| x / length + 2.0)
+    })
+}
+
+/// `k` neighbours each on average.
+fn on_sphere(n: usize, k: f64) -> System {
+    let r = 2.0 * (k / n as f64).sqrt();
+    System::new(format!("sphere n {n} k {k}"), 4.0, sphere(n), Radii::Uniform(r as f32))
+}
+
 fn cluster(n: usize) -> impl Iterator<Item = [f32; 3]> {
     let mut rng = Pcg64Mcg::seed_from_u64(5);
     let distribution = Normal::new(500.0, 25.0).expect("sigma is positive");
@@ -105,6 +122,12 @@ fn main() {
         Box::new(|| System::uniform(1_000_000, 100.0)),
         Box::new(|| System::new("sparse n 1000000".into(), 1e3, random(1_000_000, 1e3), Radii::Uniform(1.0))),
         Box::new(|| System::new("cluster n 50000 r 1".into(), 1e3, cluster(50_000), Radii::Uniform(1.0))),
+        Box::new(|| System::new("cluster n 100000 r 1".into(), 1e3, cluster(100_000), Radii::Uniform(1.0))),
+        Box::new(|| System::new("cluster n 1000000 r 1".into(), 1e3, cluster(1_000_000), Radii::Uniform(1.0))),
+        Box::new(|| on_sphere(100_000, 9.0)),
+        Box::new(|| on_sphere(100_000, 72.0)),
+        Box::new(|| on_sphere(1_000_000, 9.0)),
+        Box::new(|| on_sphere(1_000_000, 72.0)),
         Box::new(|| System::new("melt n 32000".into(), 33.5919, melt(20, 33.5919 / 20.0), Radii::Uniform(2.5))),
         Box::new(|| {
             let radii = Radii::PerParticle(lognormal(100_000));

@@ -3,9 +3,10 @@
 use nearfield::{
     Boundary, Error, Interaction, Method, Radii, System,
     auto::{Choice, Cost, DeviceProfile, Profile, Survey},
+    bench::{Outcome, Suite, read_records, results_file},
     generate::{Generate, Positions},
 };
-use std::fs;
+use std::{collections::BTreeMap, fs, path::Path};
 
 fn gas(n: usize, radii: Radii) -> System {
     let spec = Generate { n, positions: Positions::Disordered, density: Some(1.0), ..Generate::default() };
@@ -80,6 +81,42 @@ fn the_longest_name_that_a_device_begins_with_counts_and_the_users_before_ours()
     assert_eq!(profile.of("NVIDIA L40").unwrap().source, "mine");
     assert_eq!(profile.of("NVIDIA H200 NVL").unwrap().source, "long");
     assert_eq!(profile.of("Tesla T4").unwrap().source, "any");
+}
+
+/// Table 2 of paper A and 0.01 to 10⁴ neighbours, as they were measured there (docs/results).
+#[test]
+fn what_is_predicted_to_be_fastest_on_an_h200_was_so_within_a_tenth() {
+    let results = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/results/h200");
+    let mut cases: BTreeMap<(String, usize), Vec<(Survey, Method, f64)>> = BTreeMap::new();
+    for suite in [Suite::Methods, Suite::Neighbors] {
+        for record in read_records(&results_file(&results, suite)).unwrap() {
+            let (Outcome::Measured(measured), false) = (&record.outcome, record.plan.deterministic) else { continue };
+            let variable_radii = record.case.contains("r=U") || record.case.contains("r=LN");
+            let survey = Survey { n: record.n, neighbors: measured.neighbors, variable_radii };
+            let case = cases.entry((record.case, record.n)).or_default();
+            case.push((survey, record.plan.method, measured.time.median));
+        }
+    }
+    let profile = Profile::load().unwrap();
+    let profile = profile.of("NVIDIA H200").unwrap();
+    let mut compared = 0;
+    for (case, measured) in &cases {
+        let predicted = |survey: &Survey, method: Method| {
+            profile
+                .predict(survey)
+                .into_iter()
+                .find(|&(of, _)| of == method)
+                .map_or(f64::INFINITY, |(_, seconds)| seconds)
+        };
+        let chosen = |a: &&(Survey, Method, f64), b: &&(Survey, Method, f64)| {
+            predicted(&a.0, a.1).total_cmp(&predicted(&b.0, b.1))
+        };
+        let &(_, method, seconds) = measured.iter().min_by(chosen).unwrap();
+        let best = measured.iter().map(|&(_, _, seconds)| seconds).fold(f64::INFINITY, f64::min);
+        assert!(seconds <= 1.1 * best, "{case:?}: {method} takes {seconds} s, the best {best}");
+        compared += usize::from(measured.len() > 1);
+    }
+    assert!(compared > 50, "{compared}");
 }
 
 #[test]

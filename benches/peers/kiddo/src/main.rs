@@ -1,20 +1,41 @@
-//! Full neighbour lists of uniform points with kiddo's immutable k-d tree, in single precision and open space (it has
-//! no periodic boundaries). Prints the median of three times, index and output included. Threads: RAYON_NUM_THREADS.
+//! Full neighbour lists with kiddo's immutable k-d tree, in single precision and open space (it has no periodic
+//! boundaries): uniform points, points on a sphere and in a normal cluster. Prints the median of three times, index and
+//! output included. Threads: RAYON_NUM_THREADS.
 
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
-use std::{f64::consts::PI, time::Instant};
+use std::{
+    f64::consts::{PI, TAU},
+    time::Instant,
+};
+
+/// Name, points and cutoff.
+type Cloud = (String, Vec<[f32; 3]>, f32);
+
+fn clouds(n: usize) -> Vec<Cloud> {
+    let mut random = rand_pcg::Pcg64Mcg::seed_from_u64(1);
+    let length = (n as f64).cbrt() as f32;
+    let uniform: Vec<[f32; 3]> = (0..n).map(|_| std::array::from_fn(|_| random.random_range(0.0..length))).collect();
+    // Box and Muller.
+    let mut normal = || {
+        let (u, v): (f64, f64) = (1.0 - random.random::<f64>(), random.random());
+        ((-2.0 * u.ln()).sqrt() * (TAU * v).cos()) as f32
+    };
+    let normal: Vec<[f32; 3]> = (0..n).map(|_| std::array::from_fn(|_| normal())).collect();
+    let on_sphere = |p: &[f32; 3]| p.map(|x| x / p.iter().map(|x| x * x).sum::<f32>().sqrt());
+    let sphere: Vec<_> = normal.iter().map(on_sphere).collect();
+    let cluster: Vec<_> = normal.iter().map(|p| p.map(|x| 25.0 * x)).collect();
+    let in_space = |k: f64| (format!("uniform k={k}"), uniform.clone(), (k / (4.0 / 3.0 * PI)).cbrt() as f32);
+    let on_surface = |k: f64| (format!("sphere k={k}"), sphere.clone(), (2.0 * (k / n as f64).sqrt()) as f32);
+    let clouds = [8.0, 32.0, 100.0].map(in_space).into_iter().chain([9.0, 72.0].map(on_surface));
+    clouds.chain([("cluster r=1".into(), cluster, 1.0)]).collect()
+}
 
 fn main() {
-    println!("n,k,tool,threads,milliseconds,entries");
+    println!("n,points,tool,threads,milliseconds,entries");
     for n in [100_000usize, 1_000_000] {
-        let mut random = rand_pcg::Pcg64Mcg::seed_from_u64(1);
-        let length = (n as f64).cbrt() as f32;
-        let points: Vec<[f32; 3]> =
-            (0..n).map(|_| std::array::from_fn(|_| random.random_range(0.0..length))).collect();
-        for k in [8.0f64, 32.0, 100.0] {
-            let r = (k / (4.0 / 3.0 * PI)).cbrt() as f32;
+        for (name, points, r) in clouds(n) {
             let mut times = Vec::new();
             let mut entries = 0;
             for _ in 0..3 {
@@ -28,7 +49,7 @@ fn main() {
                 entries = rows.iter().map(Vec::len).sum::<usize>() - n;
             }
             times.sort_by(f64::total_cmp);
-            println!("{n},{k},kiddo full,{},{:.1},{entries}", rayon::current_num_threads(), times[1]);
+            println!("{n},{name},kiddo full,{},{:.1},{entries}", rayon::current_num_threads(), times[1]);
         }
     }
 }

@@ -8,32 +8,42 @@ use nearfield_core::{
 };
 
 /// Nanoseconds of a new list: in any case, for each particle, and for each chunk of candidates; and of a step for each
-/// chunk. From steps of melts and of sparse systems with skins of 0.3 to 4 on an H200 (docs/performance.md); only their
-/// ratios matter.
+/// chunk, with sums that depend on order and with exact ones. From steps of melts and of sparse systems with skins of 0.3
+/// to 4 on an H200 (docs/performance.md); only their ratios matter.
 const LAUNCHING: f64 = 25_000.0;
 const SORTING: f64 = 0.2;
 const LISTING: f64 = 0.45;
 const READING: f64 = 0.4;
+const READING_EXACT: f64 = 3.0;
+
+/// Lists cost less beside their use than on a CPU: the first guess is for so much of the steps.
+const FIRST_LIFE: f32 = 0.6;
 
 /// Chooses the skin, from time to time.
-pub(super) struct ListSkin(SkinTuner);
+pub(super) struct ListSkin {
+    tuner: SkinTuner,
+    /// Of a step, for each chunk.
+    reading: f64,
+}
 
 impl ListSkin {
     /// A skin as far as the box allows it: no pair may be within range and skin at two images.
     pub fn new(plan: &Plan, physics: &Physics) -> Self {
-        Self(SkinTuner::new(plan.skin, physics.largest, physics.sim_box.room_around(physics.largest)))
+        let room = physics.sim_box.room_around(physics.largest);
+        let reading = if plan.deterministic { READING_EXACT } else { READING };
+        Self { tuner: SkinTuner::new(plan.skin, physics.largest, room), reading }
     }
 
     /// \[length\]
     pub fn skin(&self) -> f32 {
-        self.0.skin()
+        self.tuner.skin()
     }
 
     /// Guesses from the longest way that a particle moves in a step, where no list has served yet; whether that changes the
     /// skin.
     pub fn guess(&mut self, longest: f32) -> bool {
         let before = self.skin();
-        self.0.guess(longest);
+        self.tuner.guess(FIRST_LIFE * longest);
         self.skin() != before
     }
 
@@ -42,16 +52,16 @@ impl ListSkin {
         if served.lists == 0 {
             return;
         }
-        self.0.record(ListUse {
+        self.tuner.record(ListUse {
             steps: served.evaluations as f64 / served.lists as f64,
             sorting: LAUNCHING + SORTING * n as f64,
             listing: LISTING * served.chunks as f64,
-            reading: READING * served.chunks as f64,
+            reading: self.reading * served.chunks as f64,
         });
     }
 
     /// Notes that a list is too large; whether a smaller skin is to be tried.
     pub fn shrink(&mut self) -> bool {
-        self.0.shrink()
+        self.tuner.shrink()
     }
 }
