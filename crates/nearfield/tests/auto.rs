@@ -83,11 +83,14 @@ fn the_longest_name_that_a_device_begins_with_counts_and_the_users_before_ours()
     assert_eq!(profile.of("Tesla T4").unwrap().source, "any");
 }
 
+/// A system, a method and its seconds of a step.
+type Measured = (Survey, Method, f64);
+
 /// Table 2 of paper A and 0.01 to 10⁴ neighbours, as they were measured there (docs/results).
 #[test]
 fn what_is_predicted_to_be_fastest_on_an_h200_was_so_within_a_tenth() {
     let results = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/results/h200");
-    let mut cases: BTreeMap<(String, usize), Vec<(Survey, Method, f64)>> = BTreeMap::new();
+    let mut cases: BTreeMap<_, Vec<Measured>> = BTreeMap::new();
     for suite in [Suite::Methods, Suite::Neighbors] {
         for record in read_records(&results_file(&results, suite)).unwrap() {
             let (Outcome::Measured(measured), false) = (&record.outcome, record.plan.deterministic) else { continue };
@@ -108,9 +111,7 @@ fn what_is_predicted_to_be_fastest_on_an_h200_was_so_within_a_tenth() {
                 .find(|&(of, _)| of == method)
                 .map_or(f64::INFINITY, |(_, seconds)| seconds)
         };
-        let chosen = |a: &&(Survey, Method, f64), b: &&(Survey, Method, f64)| {
-            predicted(&a.0, a.1).total_cmp(&predicted(&b.0, b.1))
-        };
+        let chosen = |a: &&Measured, b: &&Measured| predicted(&a.0, a.1).total_cmp(&predicted(&b.0, b.1));
         let &(_, method, seconds) = measured.iter().min_by(chosen).unwrap();
         let best = measured.iter().map(|&(_, _, seconds)| seconds).fold(f64::INFINITY, f64::min);
         assert!(seconds <= 1.1 * best, "{case:?}: {method} takes {seconds} s, the best {best}");
