@@ -22,7 +22,7 @@ fn a_short_run_takes_what_is_predicted_to_be_the_fastest() {
 
 #[test]
 fn a_long_run_tries_some_and_moves_as_if_the_fastest_had_been_asked_for() {
-    const STEPS: u64 = 12_000;
+    const STEPS: u64 = 30_000;
     let plan = Plan { deterministic: true, ..Plan::new(Method::Cell) };
     let builder = || Simulation::builder(crystal(108, 0.8442, 1.0)).device(Device::Cpu).plan(plan);
     let mut tuned = builder().build().unwrap();
