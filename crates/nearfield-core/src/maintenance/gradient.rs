@@ -99,13 +99,11 @@ impl Gradient {
             (None, now) => now.filter(|_| n >= WINDOW),
         }
     }
-}
 
-impl Gradient {
     /// What a query of a new structure costs more from step to step.
     fn trend(&self) -> f64 {
-        let enough = self.fresh.len() > FRESH / 2;
-        enough.then(|| robust::slope(&self.fresh)).flatten().unwrap_or(0.0)
+        let fresh = if self.fresh.len() > FRESH / 2 { &self.fresh[..] } else { &[] };
+        robust::slope(fresh).unwrap_or(0.0)
     }
 
     /// Refits after which a rebuild costs little beside all that was done since the last one.

@@ -16,10 +16,10 @@ use nearfield_core::Method;
 
 pub(super) fn section(records: &[&Record]) -> Section {
     let (mut figures, mut tables) = (Vec::new(), Vec::new());
-    // Suites may have been measured in parts, in any order.
+    // Suites may have been measured in parts, in any order; runs of so many steps come after the table's own cases.
     let order = paper_a_names();
     let mut records = records.to_vec();
-    records.sort_by_key(|record| order.iter().position(|name| *name == record.case));
+    records.sort_by_key(|record| order.iter().position(|name| *name == record.case).unwrap_or(order.len()));
     let records = &records[..];
     for (device, name) in DeviceNames::of(records).iter() {
         let of_device: Vec<&Record> = records.iter().copied().filter(|r| r.device_name == *device).collect();
