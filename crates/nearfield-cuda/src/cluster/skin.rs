@@ -16,22 +16,26 @@ const LISTING: f64 = 0.45;
 const READING: f64 = 0.4;
 const READING_EXACT: f64 = 3.0;
 
-/// Lists cost less beside their use than on a CPU: the first guess is for so much of the steps.
+/// Lists cost less beside their use than on a CPU, and least beside exact sums: the first guess is for so much of the steps.
 const FIRST_LIFE: f32 = 0.6;
+const FIRST_LIFE_EXACT: f32 = 0.2;
 
 /// Chooses the skin, from time to time.
 pub(super) struct ListSkin {
     tuner: SkinTuner,
     /// Of a step, for each chunk.
     reading: f64,
+    /// See [`FIRST_LIFE`].
+    first_life: f32,
 }
 
 impl ListSkin {
     /// A skin as far as the box allows it: no pair may be within range and skin at two images.
     pub fn new(plan: &Plan, physics: &Physics) -> Self {
         let room = physics.sim_box.room_around(physics.largest);
-        let reading = if plan.deterministic { READING_EXACT } else { READING };
-        Self { tuner: SkinTuner::new(plan.skin, physics.largest, room), reading }
+        let (reading, first_life) =
+            if plan.deterministic { (READING_EXACT, FIRST_LIFE_EXACT) } else { (READING, FIRST_LIFE) };
+        Self { tuner: SkinTuner::new(plan.skin, physics.largest, room), reading, first_life }
     }
 
     /// \[length\]
@@ -43,7 +47,7 @@ impl ListSkin {
     /// skin.
     pub fn guess(&mut self, longest: f32) -> bool {
         let before = self.skin();
-        self.tuner.guess(FIRST_LIFE * longest);
+        self.tuner.guess(self.first_life * longest);
         self.skin() != before
     }
 
