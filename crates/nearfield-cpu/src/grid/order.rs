@@ -52,24 +52,39 @@ impl Sorting {
     /// Writes the particles of records where they belong, sorted along x.
     #[inline(always)]
     pub fn sort_records(&mut self, records: &[Record], position: [&mut [f32]; 3], particle: &mut [u32]) {
-        let [x, y, z] = &mut self.position;
-        for axis in [&mut *x, &mut *y, &mut *z] {
-            axis.resize(records.len(), 0.0);
+        let x = &mut self.position[0];
+        x.resize(records.len(), 0.0);
+        for (x, record) in x.iter_mut().zip(records) {
+            *x = record.position[0];
         }
-        self.particle.resize(records.len(), 0);
-        let copies = x.iter_mut().zip(y).zip(z).zip(&mut self.particle);
-        for ((((x, y), z), particle), record) in copies.zip(records) {
+        self.find_order(records.len());
+        let [x, y, z] = position;
+        let places = x.iter_mut().zip(y).zip(z).zip(particle);
+        for ((((x, y), z), particle), &k) in places.zip(&self.order) {
+            let record = records[k as usize];
             [*x, *y, *z] = record.position;
             *particle = record.particle;
         }
-        self.sort_copies(position, particle);
     }
 
-    /// Writes the copies by cells of about one particle each, and sorted within them.
+    /// Writes the copies in order.
     #[inline(always)]
     fn sort_copies(&mut self, position: [&mut [f32]; 3], particle: &mut [u32]) {
-        let n = particle.len();
-        let x = &self.position[0][..];
+        self.find_order(particle.len());
+        for (axis, copy) in position.into_iter().zip(&self.position) {
+            for (to, &k) in axis.iter_mut().zip(&self.order) {
+                *to = copy[k as usize];
+            }
+        }
+        for (to, &k) in particle.iter_mut().zip(&self.order) {
+            *to = self.particle[k as usize];
+        }
+    }
+
+    /// Finds the order of the `n` copies along x: by cells of about one particle each, and sorted within them.
+    #[inline(always)]
+    fn find_order(&mut self, n: usize) {
+        let x = &self.position[0][..n];
         let [lo, hi] = range(x);
         let per_length = n as f32 / (hi - lo);
         let per_length = if per_length.is_finite() { per_length } else { 0.0 };
@@ -94,14 +109,6 @@ impl Sorting {
             *place += 1;
         }
         sort_along(x, &mut self.order[..n]);
-        for (axis, copy) in position.into_iter().zip(&self.position) {
-            for (to, &k) in axis.iter_mut().zip(&self.order) {
-                *to = copy[k as usize];
-            }
-        }
-        for (to, &k) in particle.iter_mut().zip(&self.order) {
-            *to = self.particle[k as usize];
-        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::order::range;
 use crate::Input;
+use crate::lanes::{Isa, Kernel, Lanes};
 use rayon::prelude::*;
 
 /// Corners of the box around all particles.
@@ -17,14 +18,27 @@ impl Bounds {
         if input.is_empty() {
             return Self::default();
         }
+        let isa = Isa::detect();
         let axis = |a: usize| {
             input.position[a]
-                .par_chunks(1 << 16)
-                .map(range)
+                .par_chunks(1 << 15)
+                .map(|values| isa.run(RangeOf(values)))
                 .reduce(|| [f32::MAX, f32::MIN], |a, b| [a[0].min(b[0]), a[1].max(b[1])])
         };
         let ranges = [axis(0), axis(1), axis(2)];
         Self { lo: ranges.map(|r| r[0]), hi: ranges.map(|r| r[1]) }
+    }
+}
+
+/// See [`range`].
+struct RangeOf<'a>(&'a [f32]);
+
+impl Kernel for RangeOf<'_> {
+    type Output = [f32; 2];
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, _: L) -> [f32; 2] {
+        range(self.0)
     }
 }
 

@@ -1,12 +1,13 @@
 //! One contiguous list out of the rows of many tasks.
 
+use super::addresses::Addresses;
+use super::copy::{copy, prefetch};
 use super::rows::{Contents, Queries, Rows};
 use super::{Rule, mirror};
 use crate::{Input, Structure};
 use nearfield_core::{ListKind, ListRequest, NeighborList, SimBox};
 use rayon::prelude::*;
 use std::ops::Range;
-use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
 
 /// Tasks for each thread, so that uneven ones even out.
 const TASKS_PER_THREAD: usize = 8;
@@ -17,17 +18,15 @@ const LEAST_GROUPS: usize = 64;
 /// Fewest rows worth a task when rows are copied.
 const LEAST_ROWS: usize = 2048;
 
-/// Bits of a row's address that hold its place among its task's rows.
-const PLACE_BITS: u32 = 40;
+/// Rows are fetched so many rows before they are copied: they lie anywhere in memory.
+const AHEAD: usize = 12;
 
 /// Builds neighbour lists, keeping its buffers from one to the next: first use of a page of memory costs more than
 /// filling it.
 #[derive(Debug, Default)]
 pub struct ListBuilder {
     tasks: Vec<Rows>,
-    /// Task and first entry of each particle's row.
-    address: Vec<AtomicU64>,
-    length: Vec<AtomicU32>,
+    addresses: Addresses,
 }
 
 /// The neighbour list of the particles of `input`, from a structure built from it.
@@ -63,7 +62,7 @@ impl ListBuilder {
         let rule = Rule::for_list(structure, request.kind);
         if rule == Rule::Acting {
             let contents = Contents::Rows { images: request.shifts, distances: request.distances };
-            self.collect(structure, input.sim_box, queries, rule, contents);
+            self.collect(structure, input.sim_box, queries, None, rule, contents);
             mirror::assemble(&self.tasks, input.len(), request, list);
             sort_rows(list);
         } else {
@@ -84,17 +83,18 @@ impl ListBuilder {
         list: &mut NeighborList,
     ) {
         let contents = Contents::Rows { images: request.shifts, distances: request.distances };
-        self.collect(structure, sim_box, queries, rule, contents);
-        self.locate(n_rows);
-        resize(list, request, self.length.iter().map(|length| length.load(Relaxed)));
-        let tasks = &self.tasks;
-        let address = &self.address;
+        self.collect(structure, sim_box, queries, Some(n_rows), rule, contents);
+        let Self { tasks, addresses } = self;
+        resize(list, request, addresses.lengths());
         Columns::of(list).for_each_block(&|columns: Columns, rows: Range<usize>| {
-            columns.fill(rows, |i| {
-                let address = address[i].load(Relaxed);
-                let (task, place) = (address >> PLACE_BITS, address & ((1 << PLACE_BITS) - 1));
-                (&tasks[task as usize], place as usize)
-            });
+            columns.fill(
+                rows,
+                #[inline(always)]
+                |i| {
+                    let (task, first) = addresses.of(i);
+                    (&tasks[task], first)
+                },
+            );
         });
         if request.sorted {
             sort_rows(list);
@@ -108,44 +108,36 @@ impl ListBuilder {
         neighbors.clear();
         if rule == Rule::Acting {
             let contents = Contents::Rows { images: false, distances: false };
-            self.collect(structure, input.sim_box, queries, rule, contents);
+            self.collect(structure, input.sim_box, queries, None, rule, contents);
             mirror::count(&self.tasks, input.len(), neighbors)
         } else {
-            self.collect(structure, input.sim_box, queries, rule, Contents::Count);
-            self.locate(input.len());
-            neighbors.extend(self.length.iter().map(|length| length.load(Relaxed)));
+            self.collect(structure, input.sim_box, queries, Some(input.len()), rule, Contents::Count);
+            neighbors.extend(self.addresses.lengths());
             neighbors.par_iter().map(|&n| u64::from(n)).sum::<u64>() / 2
         }
     }
 
-    /// Fills the rows of all tasks.
+    /// Fills the rows of all tasks, and notes where they are if there are to be no more than `n_rows` of them.
     fn collect(
         &mut self,
         structure: &dyn Structure,
         sim_box: &SimBox,
         queries: Queries,
+        n_rows: Option<usize>,
         rule: Rule,
         contents: Contents,
     ) {
         let n_groups = queries.structure.n_groups();
         let n_tasks = (TASKS_PER_THREAD * rayon::current_num_threads()).min(n_groups / LEAST_GROUPS).max(1);
-        self.tasks.resize_with(n_tasks, Rows::default);
-        self.tasks.par_iter_mut().enumerate().for_each(|(task, rows)| {
+        let Self { tasks, addresses } = self;
+        tasks.resize_with(n_tasks, Rows::default);
+        addresses.resize(n_rows.unwrap_or(0));
+        let addresses = &*addresses;
+        tasks.par_iter_mut().enumerate().for_each(|(task, rows)| {
             let groups = n_groups * task / n_tasks..n_groups * (task + 1) / n_tasks;
             rows.collect(structure, sim_box, queries, groups, rule, contents);
-        });
-    }
-
-    /// Notes where the row of each particle is.
-    fn locate(&mut self, n_rows: usize) {
-        self.address.resize_with(n_rows, AtomicU64::default);
-        self.length.resize_with(n_rows, AtomicU32::default);
-        let (address, length) = (&self.address, &self.length);
-        self.tasks.par_iter().enumerate().for_each(|(task, rows)| {
-            for k in 0..rows.len() {
-                let (particle, extent) = rows.extent(k);
-                length[particle as usize].store(extent.len() as u32, Relaxed);
-                address[particle as usize].store((task as u64) << PLACE_BITS | extent.start as u64, Relaxed);
+            if n_rows.is_some() {
+                addresses.note(task, rows);
             }
         });
     }
@@ -246,14 +238,15 @@ impl<'a> Columns<'a> {
 
     /// Copies every row from its source: rows and first entry.
     fn fill<'b>(mut self, rows: Range<usize>, source: impl Fn(usize) -> (&'b Rows, usize)) {
-        for (k, i) in rows.enumerate() {
-            let extent = self.extent(k);
-            if extent.is_empty() {
-                continue;
+        for (k, i) in rows.clone().enumerate() {
+            if i + AHEAD < rows.end {
+                let (from, start) = source(i + AHEAD);
+                prefetch(from.indices(), start);
             }
+            let extent = self.extent(k);
             let (from, start) = source(i);
             let row = from.row(i as u32, start..start + extent.len());
-            self.indices[extent.clone()].copy_from_slice(row.neighbors);
+            copy(row.neighbors, &mut self.indices[extent.clone()]);
             if let Some(shifts) = &mut self.shifts {
                 shifts[extent.clone()].copy_from_slice(row.images);
             }

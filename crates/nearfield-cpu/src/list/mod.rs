@@ -1,5 +1,7 @@
 //! Neighbour lists from any structure: the runs of a group are gathered once and tested against each of its particles.
 
+mod addresses;
+mod copy;
 mod csr;
 mod mirror;
 mod rows;

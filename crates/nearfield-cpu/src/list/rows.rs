@@ -58,9 +58,11 @@ pub struct Row<'a> {
     pub r2: &'a [f32],
 }
 
-/// Rows as one array after the other. `indices` and `r2` are longer than `len`: stores write whole chunks.
+/// Rows as one array after the other. Arrays but `images` are longer than what they hold: stores write whole chunks, and
+/// what may call for memory has no place in kernels.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Output {
+    n_rows: usize,
     len: usize,
     contents: Contents,
     images: Vec<[i8; 3]>,
@@ -70,9 +72,12 @@ pub(super) struct Output {
     ends: Vec<usize>,
 }
 
-/// Where a row is written: from `len` on, in whole chunks.
+/// Where the rows of a group are written: numbers of rows and entries so far, and arrays with room for more.
 pub(super) struct Room<'a> {
-    pub len: usize,
+    pub n_rows: &'a mut usize,
+    pub len: &'a mut usize,
+    pub particle: &'a mut [u32],
+    pub ends: &'a mut [usize],
     pub indices: &'a mut [u32],
     pub r2: &'a mut [f32],
     pub images: &'a mut Vec<[i8; 3]>,
@@ -81,32 +86,30 @@ pub(super) struct Room<'a> {
 impl Output {
     pub fn clear(&mut self, contents: Contents) {
         self.contents = contents;
-        self.len = 0;
+        (self.n_rows, self.len) = (0, 0);
         self.images.clear();
-        self.particle.clear();
-        self.ends.clear();
     }
 
-    /// Room for a row of `most` neighbours.
+    /// Room for `n` rows of `most` neighbours.
     #[inline(always)]
-    pub fn room_for(&mut self, most: usize) -> Room<'_> {
+    pub fn room_for(&mut self, n: usize, most: usize) -> Room<'_> {
+        make_room(&mut self.particle, self.n_rows + n);
+        make_room(&mut self.ends, self.n_rows + n);
         if let Contents::Rows { distances, .. } = self.contents {
-            let needed = self.len + most + LANES;
-            if self.indices.len() < needed {
-                self.indices.resize(needed.next_power_of_two(), 0);
-            }
-            if distances && self.r2.len() < needed {
-                self.r2.resize(needed.next_power_of_two(), 0.0);
+            let needed = self.len + n * most + LANES;
+            make_room(&mut self.indices, needed);
+            if distances {
+                make_room(&mut self.r2, needed);
             }
         }
-        Room { len: self.len, indices: &mut self.indices, r2: &mut self.r2, images: &mut self.images }
+        let Self { n_rows, len, particle, ends, indices, r2, images, .. } = self;
+        Room { n_rows, len, particle, ends, indices, r2, images }
     }
+}
 
-    #[inline(always)]
-    pub fn finish_row(&mut self, particle: u32, end: usize) {
-        self.particle.push(particle);
-        self.ends.push(end);
-        self.len = end;
+fn make_room<T: Copy + Default>(array: &mut Vec<T>, needed: usize) {
+    if array.len() < needed {
+        array.resize(needed.next_power_of_two(), T::default());
     }
 }
 
@@ -158,7 +161,7 @@ impl Rows {
 
     /// Number of rows.
     pub fn len(&self) -> usize {
-        self.output.particle.len()
+        self.output.n_rows
     }
 
     /// Whether there are none.
@@ -181,6 +184,12 @@ impl Rows {
     /// The rows in order. Counted rows have no contents.
     pub fn iter(&self) -> impl Iterator<Item = Row<'_>> {
         (0..self.len()).map(|k| self.at(k))
+    }
+
+    /// Indices of neighbours, of all rows.
+    #[inline(always)]
+    pub(super) fn indices(&self) -> &[u32] {
+        &self.output.indices
     }
 
     /// Row `k`.

@@ -63,6 +63,9 @@ impl Group<'_> {
     #[inline(always)]
     fn scan<L: Lanes, K: Keep>(self, lanes: L, output: &mut Output) {
         let slots = self.queries.structure.slots();
+        let Room { n_rows, len: end, particle: particles, ends, indices, r2: r2s, images } =
+            output.room_for(self.group.len(), self.candidates.len());
+        let (mut row, mut len) = (*n_rows, *end);
         for slot in self.group {
             let particle = slots.particle[slot];
             if particle == u32::MAX {
@@ -76,7 +79,6 @@ impl Group<'_> {
                 radius2: lanes.splat(radius * radius),
                 particle: lanes.splat_u(particle),
             };
-            let Room { mut len, indices, r2: r2s, images } = output.room_for(self.candidates.len());
             for segment in &self.candidates.segments {
                 let shift = self.sim_box.shift(segment.image);
                 let shift = [lanes.splat(shift[0]), lanes.splat(shift[1]), lanes.splat(shift[2])];
@@ -119,8 +121,10 @@ impl Group<'_> {
                     images.resize(len, segment.image);
                 }
             }
-            output.finish_row(particle, len);
+            (particles[row], ends[row]) = (particle, len);
+            row += 1;
         }
+        (*n_rows, *end) = (row, len);
     }
 }
 
