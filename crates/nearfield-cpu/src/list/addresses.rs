@@ -3,15 +3,23 @@
 use super::rows::Rows;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
 
-/// Bits of an address that hold a place among the rows of a task.
+/// Bits of an address that hold a place in a stream.
 const PLACE_BITS: u32 = 40;
 
-/// The row of a particle: task and first entry, and number of entries. Next to each other, as they are written together
+/// The row of a particle: task, stream and first entry, and number of entries. Next to each other, as they are written together
 /// in no order.
 #[derive(Debug, Default)]
 struct Address {
     place: AtomicU64,
     length: AtomicU32,
+}
+
+/// Where a row is: one of the two streams of a task, and its first entry there.
+#[derive(Clone, Copy)]
+pub(super) struct Place {
+    pub task: usize,
+    pub stream: usize,
+    pub first: usize,
 }
 
 /// Addresses of rows, by particle.
@@ -29,16 +37,18 @@ impl Addresses {
         for k in 0..rows.len() {
             let (particle, extent) = rows.extent(k);
             let address = &self.0[particle as usize];
-            address.place.store((task as u64) << PLACE_BITS | extent.start as u64, Relaxed);
+            let stream = 2 * task + k % 2;
+            address.place.store((stream as u64) << PLACE_BITS | extent.start as u64, Relaxed);
             address.length.store(extent.len() as u32, Relaxed);
         }
     }
 
-    /// Task and first entry of the row of particle `i`.
+    /// Where the row of particle `i` is.
     #[inline(always)]
-    pub fn of(&self, i: usize) -> (usize, usize) {
+    pub fn of(&self, i: usize) -> Place {
         let place = self.0[i].place.load(Relaxed);
-        ((place >> PLACE_BITS) as usize, (place & ((1 << PLACE_BITS) - 1)) as usize)
+        let stream = (place >> PLACE_BITS) as usize;
+        Place { task: stream / 2, stream: stream % 2, first: (place & ((1 << PLACE_BITS) - 1)) as usize }
     }
 
     /// Number of entries of each row.

@@ -1,6 +1,6 @@
 //! One contiguous list out of the rows of many tasks.
 
-use super::addresses::Addresses;
+use super::addresses::{Addresses, Place};
 use super::copy::{copy, prefetch};
 use super::rows::{Contents, Queries, Rows};
 use super::{Rule, mirror};
@@ -91,8 +91,8 @@ impl ListBuilder {
                 rows,
                 #[inline(always)]
                 |i| {
-                    let (task, first) = addresses.of(i);
-                    (&tasks[task], first)
+                    let Place { task, stream, first } = addresses.of(i);
+                    (&tasks[task], stream, first)
                 },
             );
         });
@@ -236,16 +236,16 @@ impl<'a> Columns<'a> {
         }
     }
 
-    /// Copies every row from its source: rows and first entry.
-    fn fill<'b>(mut self, rows: Range<usize>, source: impl Fn(usize) -> (&'b Rows, usize)) {
+    /// Copies every row from its source: rows, stream and first entry.
+    fn fill<'b>(mut self, rows: Range<usize>, source: impl Fn(usize) -> (&'b Rows, usize, usize)) {
         for (k, i) in rows.clone().enumerate() {
             if i + AHEAD < rows.end {
-                let (from, start) = source(i + AHEAD);
-                prefetch(from.indices(), start);
+                let (from, stream, start) = source(i + AHEAD);
+                prefetch(from.indices(stream), start);
             }
             let extent = self.extent(k);
-            let (from, start) = source(i);
-            let row = from.row(i as u32, start..start + extent.len());
+            let (from, stream, start) = source(i);
+            let row = from.row(i as u32, stream, start..start + extent.len());
             copy(row.neighbors, &mut self.indices[extent.clone()]);
             if let Some(shifts) = &mut self.shifts {
                 shifts[extent.clone()].copy_from_slice(row.images);

@@ -58,52 +58,61 @@ pub struct Row<'a> {
     pub r2: &'a [f32],
 }
 
-/// Rows as one array after the other. Arrays but `images` are longer than what they hold: stores write whole chunks, and
-/// what may call for memory has no place in kernels.
+/// Rows as two streams, even ones in the first and odd ones in the second: two rows are written at a time, the length of
+/// neither of which is known before.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Output {
     n_rows: usize,
-    len: usize,
     contents: Contents,
-    images: Vec<[i8; 3]>,
-    indices: Vec<u32>,
-    r2: Vec<f32>,
     particle: Vec<u32>,
     ends: Vec<usize>,
+    streams: [Stream; 2],
 }
 
-/// Where the rows of a group are written: numbers of rows and entries so far, and arrays with room for more.
+/// Rows as one array after the other. Arrays but `images` are longer than what they hold: stores write whole chunks, and
+/// what may call for memory has no place in kernels.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Stream {
+    pub len: usize,
+    pub indices: Vec<u32>,
+    pub r2: Vec<f32>,
+    pub images: Vec<[i8; 3]>,
+}
+
+/// Where the rows of a group are written: number of rows so far, and arrays with room for more.
 pub(super) struct Room<'a> {
     pub n_rows: &'a mut usize,
-    pub len: &'a mut usize,
     pub particle: &'a mut [u32],
     pub ends: &'a mut [usize],
-    pub indices: &'a mut [u32],
-    pub r2: &'a mut [f32],
-    pub images: &'a mut Vec<[i8; 3]>,
+    pub streams: &'a mut [Stream; 2],
 }
 
 impl Output {
     pub fn clear(&mut self, contents: Contents) {
         self.contents = contents;
-        (self.n_rows, self.len) = (0, 0);
-        self.images.clear();
+        self.n_rows = 0;
+        for stream in &mut self.streams {
+            stream.len = 0;
+            stream.images.clear();
+        }
     }
 
     /// Room for `n` rows of `most` neighbours.
     #[inline(always)]
     pub fn room_for(&mut self, n: usize, most: usize) -> Room<'_> {
-        make_room(&mut self.particle, self.n_rows + n);
-        make_room(&mut self.ends, self.n_rows + n);
-        if let Contents::Rows { distances, .. } = self.contents {
-            let needed = self.len + n * most + LANES;
-            make_room(&mut self.indices, needed);
-            if distances {
-                make_room(&mut self.r2, needed);
+        let Self { n_rows, particle, ends, streams, contents } = self;
+        make_room(particle, *n_rows + n);
+        make_room(ends, *n_rows + n);
+        if let Contents::Rows { distances, .. } = *contents {
+            for stream in &mut *streams {
+                let needed = stream.len + n.div_ceil(2) * most + LANES;
+                make_room(&mut stream.indices, needed);
+                if distances {
+                    make_room(&mut stream.r2, needed);
+                }
             }
         }
-        let Self { n_rows, len, particle, ends, indices, r2, images, .. } = self;
-        Room { n_rows, len, particle, ends, indices, r2, images }
+        Room { n_rows, particle, ends, streams }
     }
 }
 
@@ -171,13 +180,13 @@ impl Rows {
 
     /// Number of neighbours in all rows.
     pub fn n_entries(&self) -> usize {
-        self.output.len
+        self.output.streams.iter().map(|stream| stream.len).sum()
     }
 
-    /// Particle and extent of row `k`.
+    /// Particle and extent of row `k`, in stream `k % 2`.
     #[inline(always)]
-    pub(crate) fn extent(&self, k: usize) -> (u32, Range<usize>) {
-        let start = if k == 0 { 0 } else { self.output.ends[k - 1] };
+    pub(super) fn extent(&self, k: usize) -> (u32, Range<usize>) {
+        let start = if k < 2 { 0 } else { self.output.ends[k - 2] };
         (self.output.particle[k], start..self.output.ends[k])
     }
 
@@ -186,23 +195,17 @@ impl Rows {
         (0..self.len()).map(|k| self.at(k))
     }
 
-    /// Indices of neighbours, of all rows.
-    #[inline(always)]
-    pub(super) fn indices(&self) -> &[u32] {
-        &self.output.indices
-    }
-
     /// Row `k`.
     #[inline(always)]
     pub(crate) fn at(&self, k: usize) -> Row<'_> {
         let (particle, extent) = self.extent(k);
-        self.row(particle, extent)
+        self.row(particle, k % 2, extent)
     }
 
     #[inline(always)]
-    pub(super) fn row(&self, particle: u32, extent: Range<usize>) -> Row<'_> {
-        let Output { indices, images, r2, contents, .. } = &self.output;
-        let (rows, with_images, with_distances) = match *contents {
+    pub(super) fn row(&self, particle: u32, stream: usize, extent: Range<usize>) -> Row<'_> {
+        let Stream { indices, images, r2, .. } = &self.output.streams[stream];
+        let (rows, with_images, with_distances) = match self.output.contents {
             Contents::Count => (false, false, false),
             Contents::Rows { images, distances } => (true, images, distances),
         };
@@ -213,6 +216,12 @@ impl Rows {
             images: &images[kept(with_images)],
             r2: &r2[kept(with_distances)],
         }
+    }
+
+    /// Indices of neighbours, of all rows of a stream.
+    #[inline(always)]
+    pub(super) fn indices(&self, stream: usize) -> &[u32] {
+        &self.output.streams[stream].indices
     }
 }
 

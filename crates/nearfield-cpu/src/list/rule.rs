@@ -25,6 +25,19 @@ pub(super) struct Query<L: Lanes> {
     pub particle: L::U,
 }
 
+impl<L: Lanes> Query<L> {
+    /// Particle `particle` at a position.
+    #[inline(always)]
+    pub fn new(lanes: L, [x, y, z]: [f32; 3], radius: f32, particle: u32) -> Self {
+        Self {
+            position: [lanes.splat(x), lanes.splat(y), lanes.splat(z)],
+            radius: lanes.splat(radius),
+            radius2: lanes.splat(radius * radius),
+            particle: lanes.splat_u(particle),
+        }
+    }
+}
+
 /// Candidates, one in each lane.
 #[derive(Clone, Copy)]
 pub(super) struct Lane<L: Lanes> {

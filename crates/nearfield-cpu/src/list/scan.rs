@@ -1,10 +1,10 @@
 //! The kernel: candidates tested against each query of a group, those within range appended to its row.
 
-use super::rows::{Contents, Output, Queries, Room, Rows};
+use super::rows::{Contents, Output, Queries, Room, Rows, Stream};
 use super::rule::{Acting, Bipartite, Full, Half, Keep, Lane, Query, Rule};
 use crate::candidates::{Candidates, Segment};
 use crate::lanes::{Kernel, Lanes};
-use crate::{GroupBox, LANES, Structure};
+use crate::{GroupBox, LANES, Slots, Structure};
 use nearfield_core::SimBox;
 use std::ops::Range;
 
@@ -59,73 +59,116 @@ struct Group<'a> {
     contents: Contents,
 }
 
+/// Queries that are scanned together: candidates are read once for both.
+const TOGETHER: usize = 2;
+
 impl Group<'_> {
     #[inline(always)]
     fn scan<L: Lanes, K: Keep>(self, lanes: L, output: &mut Output) {
         let slots = self.queries.structure.slots();
-        let Room { n_rows, len: end, particle: particles, ends, indices, r2: r2s, images } =
+        let Room { n_rows, particle: particles, ends, streams } =
             output.room_for(self.group.len(), self.candidates.len());
-        let (mut row, mut len) = (*n_rows, *end);
-        for slot in self.group {
-            let particle = slots.particle[slot];
-            if particle == u32::MAX {
-                continue;
+        let [even, odd] = streams;
+        let mut slot = self.group.start;
+        while let Some(first) = next_particle(slots, slot..self.group.end) {
+            let second = next_particle(slots, first + 1..self.group.end);
+            slot = second.map_or(
+                self.group.end,
+                #[inline(always)]
+                |slot| slot + 1,
+            );
+            // In place of a second one that there is not: nothing is within range of it.
+            let nowhere = Query::new(lanes, [Slots::FAR; 3], 0.0, u32::MAX);
+            let queries = [
+                self.query(lanes, first),
+                second.map_or(
+                    nowhere,
+                    #[inline(always)]
+                    |slot| self.query(lanes, slot),
+                ),
+            ];
+            let streams = if *n_rows % 2 == 0 { [&mut *even, &mut *odd] } else { [&mut *odd, &mut *even] };
+            let lens = self.scan_together::<L, K>(lanes, queries, streams);
+            for (slot, len) in [Some(first), second].into_iter().flatten().zip(lens) {
+                (particles[*n_rows], ends[*n_rows]) = (slots.particle[slot], len);
+                *n_rows += 1;
             }
-            let radius = slots.radius.get(slot).copied().unwrap_or(self.queries.uniform);
-            let [x, y, z] = slots.at(slot);
-            let query = Query {
-                position: [lanes.splat(x), lanes.splat(y), lanes.splat(z)],
-                radius: lanes.splat(radius),
-                radius2: lanes.splat(radius * radius),
-                particle: lanes.splat_u(particle),
-            };
-            for segment in &self.candidates.segments {
-                let shift = self.sim_box.shift(segment.image);
-                let shift = [lanes.splat(shift[0]), lanes.splat(shift[1]), lanes.splat(shift[2])];
-                let shift = (segment.image != [0; 3]).then_some(shift);
-                let block = Block { lanes, query, candidates: self.candidates, segment };
-                len = match (self.contents, shift) {
-                    (Contents::Count, None) => block.each_chunk::<K>(
-                        None,
-                        len,
-                        #[inline(always)]
-                        |_, _, _, _| (),
-                    ),
-                    (Contents::Count, shift) => block.each_chunk::<K>(
-                        shift,
-                        len,
-                        #[inline(always)]
-                        |_, _, _, _| (),
-                    ),
-                    (Contents::Rows { distances: false, .. }, None) => block.each_chunk::<K>(
-                        None,
-                        len,
-                        #[inline(always)]
-                        |at, mask, _, particle| {
-                            lanes.compress_u(mask, particle, chunk_mut(indices, at));
-                        },
-                    ),
-                    (Contents::Rows { distances, .. }, shift) => block.each_chunk::<K>(
-                        shift,
-                        len,
-                        #[inline(always)]
-                        |at, mask, r2, particle| {
-                            lanes.compress_u(mask, particle, chunk_mut(indices, at));
-                            if distances {
-                                lanes.compress(mask, r2, chunk_mut(r2s, at));
-                            }
-                        },
-                    ),
-                };
-                if let Contents::Rows { images: true, .. } = self.contents {
-                    images.resize(len, segment.image);
-                }
-            }
-            (particles[row], ends[row]) = (particle, len);
-            row += 1;
         }
-        (*n_rows, *end) = (row, len);
     }
+
+    #[inline(always)]
+    fn query<L: Lanes>(&self, lanes: L, slot: usize) -> Query<L> {
+        let slots = self.queries.structure.slots();
+        let radius = slots.radius.get(slot).copied().unwrap_or(self.queries.uniform);
+        Query::new(lanes, slots.at(slot), radius, slots.particle[slot])
+    }
+
+    /// Appends the rows of two queries to a stream each, and gives the lengths of these then.
+    #[inline(always)]
+    fn scan_together<L: Lanes, K: Keep>(
+        &self,
+        lanes: L,
+        queries: [Query<L>; TOGETHER],
+        [first, second]: [&mut Stream; TOGETHER],
+    ) -> [usize; TOGETHER] {
+        let mut lens = [first.len, second.len];
+        let (indices, r2s) =
+            ([&mut first.indices[..], &mut second.indices[..]], [&mut first.r2[..], &mut second.r2[..]]);
+        for segment in &self.candidates.segments {
+            let shift = self.sim_box.shift(segment.image);
+            let shift = [lanes.splat(shift[0]), lanes.splat(shift[1]), lanes.splat(shift[2])];
+            let shift = (segment.image != [0; 3]).then_some(shift);
+            let block = Block { lanes, queries, candidates: self.candidates, segment };
+            lens = match (self.contents, shift) {
+                (Contents::Count, None) => block.each_chunk::<K>(
+                    None,
+                    lens,
+                    #[inline(always)]
+                    |_, _, _, _, _| (),
+                ),
+                (Contents::Count, shift) => block.each_chunk::<K>(
+                    shift,
+                    lens,
+                    #[inline(always)]
+                    |_, _, _, _, _| (),
+                ),
+                (Contents::Rows { distances: false, .. }, None) => block.each_chunk::<K>(
+                    None,
+                    lens,
+                    #[inline(always)]
+                    |query, at, mask, _, particle| {
+                        lanes.compress_u(mask, particle, chunk_mut(indices[query], at));
+                    },
+                ),
+                (Contents::Rows { distances, .. }, shift) => block.each_chunk::<K>(
+                    shift,
+                    lens,
+                    #[inline(always)]
+                    |query, at, mask, r2, particle| {
+                        lanes.compress_u(mask, particle, chunk_mut(indices[query], at));
+                        if distances {
+                            lanes.compress(mask, r2, chunk_mut(r2s[query], at));
+                        }
+                    },
+                ),
+            };
+            if let Contents::Rows { images: true, .. } = self.contents {
+                first.images.resize(lens[0], segment.image);
+                second.images.resize(lens[1], segment.image);
+            }
+        }
+        (first.len, second.len) = (lens[0], lens[1]);
+        lens
+    }
+}
+
+/// The first slot that is no padding.
+#[inline(always)]
+fn next_particle(slots: &Slots, mut range: Range<usize>) -> Option<usize> {
+    range.find(
+        #[inline(always)]
+        |&slot| slots.particle[slot] != u32::MAX,
+    )
 }
 
 #[inline(always)]
@@ -133,24 +176,25 @@ fn chunk_mut<T>(values: &mut [T], at: usize) -> &mut [T; LANES] {
     values[at..].first_chunk_mut().expect("room was made for whole chunks")
 }
 
-/// One query and the candidates of one image.
+/// Two queries and the candidates of one image.
 struct Block<'a, L: Lanes> {
     lanes: L,
-    query: Query<L>,
+    queries: [Query<L>; TOGETHER],
     candidates: &'a Candidates,
     segment: &'a Segment,
 }
 
 impl<L: Lanes> Block<'_, L> {
-    /// Tests whole chunks and hands each to `sink` with the length so far; gives the length after.
+    /// Tests whole chunks and hands each to `sink` with the query and the length of its stream so far; gives the lengths
+    /// after.
     #[inline(always)]
     fn each_chunk<K: Keep>(
         &self,
         shift: Option<[L::F; 3]>,
-        mut len: usize,
-        mut sink: impl FnMut(usize, u16, L::F, L::U),
-    ) -> usize {
-        let Self { lanes, query, candidates, .. } = self;
+        mut lens: [usize; TOGETHER],
+        mut sink: impl FnMut(usize, usize, u16, L::F, L::U),
+    ) -> [usize; TOGETHER] {
+        let Self { lanes, queries, candidates, .. } = self;
         let range = self.segment.start..self.segment.end;
         let x = candidates.x[range.clone()].as_chunks::<LANES>().0;
         let y = candidates.y[range.clone()].as_chunks::<LANES>().0;
@@ -158,28 +202,30 @@ impl<L: Lanes> Block<'_, L> {
         let radius = candidates.radius[range.clone()].as_chunks::<LANES>().0;
         let particle = candidates.particle[range].as_chunks::<LANES>().0;
         for ((((x, y), z), radius), particle) in x.iter().zip(y).zip(z).zip(radius).zip(particle) {
-            // The shared predicate (nearfield_core::predicate), operation by operation.
-            let mut dx = lanes.sub(lanes.load(x), query.position[0]);
-            let mut dy = lanes.sub(lanes.load(y), query.position[1]);
-            let mut dz = lanes.sub(lanes.load(z), query.position[2]);
-            if let Some(shift) = shift {
-                dx = lanes.add(dx, shift[0]);
-                dy = lanes.add(dy, shift[1]);
-                dz = lanes.add(dz, shift[2]);
+            let (x, y, z) = (lanes.load(x), lanes.load(y), lanes.load(z));
+            let (radius, particle) = (lanes.load(radius), lanes.load_u(particle));
+            for (k, query) in queries.iter().enumerate() {
+                // The shared predicate (nearfield_core::predicate), operation by operation.
+                let mut dx = lanes.sub(x, query.position[0]);
+                let mut dy = lanes.sub(y, query.position[1]);
+                let mut dz = lanes.sub(z, query.position[2]);
+                if let Some(shift) = shift {
+                    dx = lanes.add(dx, shift[0]);
+                    dy = lanes.add(dy, shift[1]);
+                    dz = lanes.add(dz, shift[2]);
+                }
+                let r2 = lanes.mul_add(dx, dx, lanes.mul_add(dy, dy, lanes.mul(dz, dz)));
+                let (radius, range2) = if K::RADII {
+                    let range = lanes.max(query.radius, radius);
+                    (radius, lanes.mul(range, range))
+                } else {
+                    (query.radius, query.radius2)
+                };
+                let mask = lanes.lt(r2, range2) & K::keep(*lanes, query, Lane { radius, particle });
+                sink(k, lens[k], mask, r2, particle);
+                lens[k] += mask.count_ones() as usize;
             }
-            let r2 = lanes.mul_add(dx, dx, lanes.mul_add(dy, dy, lanes.mul(dz, dz)));
-            let particle = lanes.load_u(particle);
-            let (radius, range2) = if K::RADII {
-                let radius = lanes.load(radius);
-                let range = lanes.max(query.radius, radius);
-                (radius, lanes.mul(range, range))
-            } else {
-                (query.radius, query.radius2)
-            };
-            let mask = lanes.lt(r2, range2) & K::keep(*lanes, query, Lane { radius, particle });
-            sink(len, mask, r2, particle);
-            len += mask.count_ones() as usize;
         }
-        len
+        lens
     }
 }
