@@ -5,6 +5,7 @@ use super::{
     blocks::{Blocks, Octet},
     list::Pairs,
     quad::{self, CLUSTER, Position, Quad, VECTORS, displacement, own_pairs, squared_length, twice},
+    sums::Parts,
 };
 use crate::{
     lanes::{self, Lanes},
@@ -176,8 +177,8 @@ pub(super) struct Kernel<'a, P, const ENERGY: bool> {
     pub law: P,
     pub blocks: &'a Blocks,
     pub list: &'a Pairs,
-    pub force: &'a mut [Octet],
-    pub energy: &'a mut [Octet],
+    pub force: &'a mut [Parts],
+    pub energy: &'a mut [Parts],
     /// Scratch: blocks of a segment some of whose particles have crossed a face.
     pub crossed: &'a mut Vec<u32>,
 }
@@ -276,8 +277,8 @@ struct Apart<'a> {
 
 /// What is added to of the blocks that a cluster is paired with.
 struct Target<'a> {
-    force: &'a mut [Octet],
-    energy: &'a mut [Octet],
+    force: &'a mut [Parts],
+    energy: &'a mut [Parts],
 }
 
 /// The pairs of a cluster and block `j`: displacements, their squared lengths, which count, and for those 1 / r².
@@ -395,7 +396,7 @@ impl<P: Law, L: Lanes> View<'_, P, L> {
             }
         }
         for axis in 0..3 {
-            lanes.add_halves(lanes.add(d[0][axis], d[1][axis]), &mut to.force[j].0[axis]);
+            lanes.add_to_parts(lanes.add(d[0][axis], d[1][axis]), &mut to.force[j].0[axis]);
         }
         if ENERGY {
             for v in 0..VECTORS {
@@ -404,7 +405,7 @@ impl<P: Law, L: Lanes> View<'_, P, L> {
                 for (of, term) in terms.into_iter().enumerate() {
                     let term = lanes.keep(inside[v], term);
                     sums.energy[v][of] = lanes.add(sums.energy[v][of], term);
-                    lanes.add_halves(term, &mut to.energy[j].0[of]);
+                    lanes.add_to_parts(term, &mut to.energy[j].0[of]);
                 }
             }
         }

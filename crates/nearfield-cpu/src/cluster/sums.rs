@@ -1,11 +1,12 @@
 //! Sums of particles: a set for each task, for it alone adds to them, and their addition.
 //!
-//! A task touches its own blocks and those within reach, so only the pages of blocks that it touches are cleared and
-//! added. Tasks are added in their order: results do not depend on which thread did what.
+//! A task touches its own blocks and those within reach, so only the pages of blocks that it touches are added. Tasks are
+//! added in their order: results do not depend on which thread did what. All sums are zero but while they are computed:
+//! who adds them up takes them.
 
 use super::{
     BLOCK, Mover,
-    blocks::{Blocks, Octet, PAGE},
+    blocks::{Blocks, PAGE},
     lennard_jones::{Kernel, Law},
     list::{PairList, Pairs, Reach},
     motion::Page,
@@ -27,6 +28,18 @@ impl Exact {
     }
 }
 
+/// Sums of eight particles, each in two parts, for it takes longer to add these up than to keep them apart: lanes k and
+/// k + 8 are particle k's.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(super) struct Parts(pub [[f32; 2 * BLOCK]; 3]);
+
+impl Default for Parts {
+    fn default() -> Self {
+        Self([[0.0; 2 * BLOCK]; 3])
+    }
+}
+
 /// Where results go: arrays `[N]` in the order of particles; the last three are empty where only forces are wanted.
 pub(crate) struct Output<'a> {
     pub force: [&'a mut [f32]; 3],
@@ -38,13 +51,12 @@ pub(crate) struct Output<'a> {
 /// Sums of one task, `[n_blocks]` or longer, of which only the touched pages mean anything.
 #[derive(Default)]
 struct TaskSums {
-    force: Vec<Octet>,
-    energy: Vec<Octet>,
+    force: Vec<Parts>,
+    energy: Vec<Parts>,
     exact: Vec<Exact>,
-    touched: Vec<u32>,
     /// See [`Kernel`].
     crossed: Vec<u32>,
-    /// Whether a page is in `touched`.
+    /// Whether a page is touched.
     seen: Vec<bool>,
 }
 
@@ -52,25 +64,69 @@ struct TaskSums {
 #[derive(Default)]
 pub(super) struct PageSums {
     tasks: Vec<TaskSums>,
-    /// Tasks that touch each page, and where those of a page begin.
-    touching: Vec<u32>,
-    starts: Vec<u32>,
+    touching: Touching,
     n_blocks: usize,
 }
 
-fn page(p: u32, n_blocks: usize) -> std::ops::Range<usize> {
-    p as usize * PAGE..((p as usize + 1) * PAGE).min(n_blocks)
+/// Tasks that touch each page, and where those of a page begin.
+#[derive(Default)]
+struct Touching {
+    tasks: Vec<u32>,
+    starts: Vec<u32>,
 }
 
-/// Makes `values` no shorter than `n` and clears the touched pages.
-fn clear<T: Copy + Default>(values: &mut Vec<T>, touched: &[u32], n: usize) {
+impl Touching {
+    /// The tasks that touch page `p`.
+    fn page(&self, p: usize) -> &[u32] {
+        &self.tasks[self.starts[p] as usize..self.starts[p + 1] as usize]
+    }
+}
+
+impl TaskSums {
+    /// Forces and energies, for several threads to take.
+    fn scattered(&mut self) -> (Scattered<'_, Parts>, Scattered<'_, Parts>) {
+        (Scattered::new(&mut self.force), Scattered::new(&mut self.energy))
+    }
+}
+
+/// Makes `values`, all zero, no shorter than `n`.
+fn grow<T: Copy + Default>(values: &mut Vec<T>, n: usize) {
     if values.len() < n {
         // Zeros that nobody has written take no memory: most pages are other tasks'. With some to spare, for the number
         // of blocks varies from list to list.
         *values = vec![T::default(); n + n / 8];
-    } else {
-        touched.iter().for_each(|&p| values[page(p, n)].fill(T::default()));
     }
+}
+
+/// Takes the sums of a block from `of`, those of the `tasks` that touch it.
+///
+/// # Safety
+/// No other thread takes sums of this block.
+#[inline(always)]
+unsafe fn take(of: &[Scattered<Parts>], tasks: &[u32], b: usize) -> [[f32; BLOCK]; 3] {
+    let mut sums = [[0.0; BLOCK]; 3];
+    for &t in tasks {
+        // SAFETY: the caller's promise.
+        let parts = unsafe { &mut of[t as usize].range(b..b + 1)[0] };
+        for k in 0..3 {
+            for lane in 0..BLOCK {
+                sums[k][lane] += parts.0[k][lane] + parts.0[k][lane + BLOCK];
+            }
+        }
+        *parts = Parts::default();
+    }
+    sums
+}
+
+/// The force from what a law's scale was left out of.
+#[inline(always)]
+fn scaled(mut force: [[f32; BLOCK]; 3], scale: f32) -> [[f32; BLOCK]; 3] {
+    for of_axis in &mut force {
+        for f in of_axis {
+            *f *= scale;
+        }
+    }
+    force
 }
 
 impl PageSums {
@@ -83,16 +139,15 @@ impl PageSums {
             sums.seen.clear();
             sums.seen.resize(n_pages, false);
             task.mark_pages(reach, blocks, &mut sums.seen);
-            sums.touched.clear();
-            sums.touched.extend((0..n_pages as u32).filter(|&p| sums.seen[p as usize]));
         });
-        self.touching.clear();
-        self.starts.clear();
+        let Touching { tasks, starts } = &mut self.touching;
+        tasks.clear();
+        starts.clear();
         for p in 0..n_pages {
-            self.starts.push(self.touching.len() as u32);
-            self.touching.extend((0..self.tasks.len() as u32).filter(|&t| self.tasks[t as usize].seen[p]));
+            starts.push(tasks.len() as u32);
+            tasks.extend((0..self.tasks.len() as u32).filter(|&t| self.tasks[t as usize].seen[p]));
         }
-        self.starts.push(self.touching.len() as u32);
+        starts.push(tasks.len() as u32);
     }
 
     /// Sums by a law for vectors, of energies too or of forces alone. Gives what they are to be multiplied with. With a
@@ -106,13 +161,13 @@ impl PageSums {
         energies: bool,
     ) -> f32 {
         let n = self.n_blocks;
-        let clear = |sums: &mut TaskSums| {
-            clear(&mut sums.force, &sums.touched, n);
+        let begin = |sums: &mut TaskSums| {
+            grow(&mut sums.force, n);
             if energies {
-                clear(&mut sums.energy, &sums.touched, n);
+                grow(&mut sums.energy, n);
             }
         };
-        self.for_each_list(blocks, list, grid, &clear, &|TaskSums { force, energy, crossed, .. }, list| {
+        self.for_each_list(blocks, list, grid, &begin, &|TaskSums { force, energy, crossed, .. }, list| {
             if energies {
                 super::isa().run(Kernel::<P, true> { law, blocks, list, force, energy, crossed });
             } else {
@@ -142,59 +197,33 @@ impl PageSums {
     }
 
     /// Hands out what was computed. False when a force is not finite.
-    pub fn give(&self, blocks: &Blocks, scale: f32, out: Output) -> bool {
+    pub fn give(&mut self, blocks: &Blocks, scale: f32, out: Output) -> bool {
         let energies = !out.energy.is_empty();
-        self.hand_out(blocks, out, |tasks, b| {
+        let Self { tasks, touching, .. } = self;
+        let (force, energy): (Vec<_>, Vec<_>) = tasks.iter_mut().map(TaskSums::scattered).unzip();
+        hand_out(touching, blocks, out, |tasks, b| {
             let mut sums = Exact::default();
             if energies {
-                for &t in tasks {
-                    let energy = &self.tasks[t as usize].energy[b].0;
-                    for (sums, terms) in sums.0[3..].iter_mut().zip(energy) {
-                        for lane in 0..BLOCK {
-                            sums[lane] += f64::from(terms[lane]);
-                        }
-                    }
-                }
-                for sums in &mut sums.0[3..5] {
-                    sums.iter_mut().for_each(|sum| *sum *= f64::from(scale));
+                // SAFETY: each block is handed out once.
+                let energy = unsafe { take(&energy, tasks, b) };
+                for (k, scale) in [scale, scale, 1.0].into_iter().enumerate() {
+                    sums.0[3 + k] = energy[k].map(|sum| f64::from(sum) * f64::from(scale));
                 }
             }
-            (self.force(tasks, b, scale), sums)
+            // SAFETY: as above.
+            (scaled(unsafe { take(&force, tasks, b) }, scale), sums)
         })
     }
 
     /// Moves particles by the computed forces. Whether all keep to their budgets.
-    pub fn advance<M: Mover>(&self, blocks: &mut Blocks, scale: f32, mover: &M) -> bool {
+    pub fn advance<M: Mover>(&mut self, blocks: &mut Blocks, scale: f32, mover: &M) -> bool {
+        let Self { tasks, touching, .. } = self;
+        let sums: Vec<_> = tasks.iter_mut().map(|task| Scattered::new(&mut task.force)).collect();
         let kept = blocks.pages().enumerate().map(|(p, page)| {
-            let tasks = self.touching_page(p);
-            super::isa().run(Advance { sums: self, tasks, scale, page, mover })
+            let tasks = touching.page(p);
+            super::isa().run(Advance { sums: &sums, tasks, scale, page, mover })
         });
         kept.reduce(|| true, |a, b| a & b)
-    }
-
-    /// The force on block `b` from the `tasks` that touch it.
-    #[inline(always)]
-    fn force(&self, tasks: &[u32], b: usize, scale: f32) -> Octet {
-        let [mut x, mut y, mut z] = [[0.0; BLOCK]; 3];
-        for &t in tasks {
-            let terms = &self.tasks[t as usize].force[b].0;
-            for lane in 0..BLOCK {
-                x[lane] += terms[0][lane];
-                y[lane] += terms[1][lane];
-                z[lane] += terms[2][lane];
-            }
-        }
-        for lane in 0..BLOCK {
-            x[lane] *= scale;
-            y[lane] *= scale;
-            z[lane] *= scale;
-        }
-        Octet([x, y, z])
-    }
-
-    /// The tasks that touch page `p`.
-    fn touching_page(&self, p: usize) -> &[u32] {
-        &self.touching[self.starts[p] as usize..self.starts[p + 1] as usize]
     }
 
     /// Sums by a function that adds a list's pairs to exact sums. False when a force is not finite.
@@ -207,12 +236,15 @@ impl PageSums {
         add: &(dyn Fn(&Pairs, &mut [Exact]) + Sync),
     ) -> bool {
         let n = self.n_blocks;
-        let clear = |sums: &mut TaskSums| clear(&mut sums.exact, &sums.touched, n);
-        self.for_each_list(blocks, list, grid, &clear, &|sums, pairs| add(pairs, &mut sums.exact));
-        self.hand_out(blocks, out, |tasks, b| {
+        let begin = |sums: &mut TaskSums| grow(&mut sums.exact, n);
+        self.for_each_list(blocks, list, grid, &begin, &|sums, pairs| add(pairs, &mut sums.exact));
+        let Self { tasks, touching, .. } = self;
+        let exact: Vec<_> = tasks.iter_mut().map(|task| Scattered::new(&mut task.exact)).collect();
+        hand_out(touching, blocks, out, |tasks, b| {
             let mut sums = Exact::default();
             for &t in tasks {
-                let of_task = &self.tasks[t as usize].exact[b];
+                // SAFETY: each block is handed out once.
+                let of_task = std::mem::take(unsafe { &mut exact[t as usize].range(b..b + 1)[0] });
                 for (sums, terms) in sums.0.iter_mut().zip(&of_task.0) {
                     for lane in 0..BLOCK {
                         sums[lane] += terms[lane];
@@ -220,65 +252,72 @@ impl PageSums {
                 }
             }
             let [x, y, z, ..] = sums.0.map(|sums| sums.map(|sum| sum as f32));
-            (Octet([x, y, z]), sums)
+            ([x, y, z], sums)
         })
-    }
-
-    /// Writes the sums that `total` gives for each block, from the tasks that touch it, to where they go.
-    fn hand_out(&self, blocks: &Blocks, out: Output, total: impl Fn(&[u32], usize) -> (Octet, Exact) + Sync) -> bool {
-        let energies = !out.energy.is_empty();
-        let force = out.force.map(Scattered::new);
-        let (energy, virial) = (Scattered::new(out.energy), Scattered::new(out.virial));
-        let neighbors = Scattered::new(out.neighbors);
-        let finite = AtomicBool::new(true);
-        (0..blocks.n_pages()).into_par_iter().for_each(|p| {
-            let tasks = self.touching_page(p);
-            let mut check = [0.0f32; BLOCK];
-            for b in blocks.page(p) {
-                let (of_block, sums) = total(tasks, b);
-                let particles = blocks.particles(b);
-                for axis in 0..3 {
-                    // SAFETY: no two blocks have a particle in common, and each is visited once.
-                    let to = unsafe { force[axis].range(particles.clone()) };
-                    to.copy_from_slice(&of_block.0[axis][..to.len()]);
-                    for lane in 0..to.len() {
-                        // Zero times anything finite is zero; NaN and infinity stay NaN.
-                        check[lane] += of_block.0[axis][lane] * 0.0;
-                    }
-                }
-                if energies {
-                    for (lane, i) in particles.enumerate() {
-                        // SAFETY: as above.
-                        unsafe {
-                            energy.write(i, 0.5 * sums.0[3][lane]);
-                            virial.write(i, 0.5 * sums.0[4][lane]);
-                            neighbors.write(i, sums.0[5][lane] as u32);
-                        }
-                    }
-                }
-            }
-            if check != [0.0; BLOCK] {
-                finite.store(false, Relaxed);
-            }
-        });
-        finite.into_inner()
     }
 
     /// Bytes held, as far as they have been touched.
     pub fn bytes(&self) -> usize {
         let of_task = |task: &TaskSums| {
-            let block = usize::from(!task.force.is_empty()) * size_of::<Octet>()
-                + usize::from(!task.energy.is_empty()) * size_of::<Octet>()
+            let block = usize::from(!task.force.is_empty()) * size_of::<Parts>()
+                + usize::from(!task.energy.is_empty()) * size_of::<Parts>()
                 + usize::from(!task.exact.is_empty()) * size_of::<Exact>();
-            task.touched.len() * PAGE * block + task.seen.capacity() + 4 * task.crossed.capacity()
+            let touched = task.seen.iter().filter(|&&seen| seen).count();
+            touched * PAGE * block + task.seen.capacity() + 4 * task.crossed.capacity()
         };
-        self.tasks.iter().map(of_task).sum::<usize>() + 4 * self.touching.capacity()
+        self.tasks.iter().map(of_task).sum::<usize>() + 4 * self.touching.tasks.capacity()
     }
+}
+
+/// Writes the sums that `total` gives for each block, from the tasks that touch it, to where they go. False when a force is
+/// not finite.
+fn hand_out(
+    touching: &Touching,
+    blocks: &Blocks,
+    out: Output,
+    total: impl Fn(&[u32], usize) -> ([[f32; BLOCK]; 3], Exact) + Sync,
+) -> bool {
+    let energies = !out.energy.is_empty();
+    let force = out.force.map(Scattered::new);
+    let (energy, virial) = (Scattered::new(out.energy), Scattered::new(out.virial));
+    let neighbors = Scattered::new(out.neighbors);
+    let finite = AtomicBool::new(true);
+    (0..blocks.n_pages()).into_par_iter().for_each(|p| {
+        let tasks = touching.page(p);
+        let mut check = [0.0f32; BLOCK];
+        for b in blocks.page(p) {
+            let (of_block, sums) = total(tasks, b);
+            let particles = blocks.particles(b);
+            for axis in 0..3 {
+                // SAFETY: no two blocks have a particle in common, and each is visited once.
+                let to = unsafe { force[axis].range(particles.clone()) };
+                to.copy_from_slice(&of_block[axis][..to.len()]);
+                for lane in 0..to.len() {
+                    // Zero times anything finite is zero; NaN and infinity stay NaN.
+                    check[lane] += of_block[axis][lane] * 0.0;
+                }
+            }
+            if energies {
+                for (lane, i) in particles.enumerate() {
+                    // SAFETY: as above.
+                    unsafe {
+                        energy.write(i, 0.5 * sums.0[3][lane]);
+                        virial.write(i, 0.5 * sums.0[4][lane]);
+                        neighbors.write(i, sums.0[5][lane] as u32);
+                    }
+                }
+            }
+        }
+        if check != [0.0; BLOCK] {
+            finite.store(false, Relaxed);
+        }
+    });
+    finite.into_inner()
 }
 
 /// Moves the particles of a page by the forces on them. Gives whether all keep to their budgets.
 struct Advance<'a, M> {
-    sums: &'a PageSums,
+    sums: &'a [Scattered<'a, Parts>],
     tasks: &'a [u32],
     scale: f32,
     page: Page<'a>,
@@ -293,8 +332,9 @@ impl<M: Mover> lanes::Kernel for Advance<'_, M> {
         let Self { sums, tasks, scale, mut page, mover } = self;
         let mut kept = true;
         for k in 0..page.position.len() {
-            let force = sums.force(tasks, page.start + k, scale);
-            mover.advance(page.particles(k), &force.0, &mut page.position[k].0);
+            // SAFETY: each block is in one page.
+            let force = scaled(unsafe { take(sums, tasks, page.start + k) }, scale);
+            mover.advance(page.particles(k), &force, &mut page.position[k].0);
             kept &= page.keeps_to_budget(k);
         }
         kept

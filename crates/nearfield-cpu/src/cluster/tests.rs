@@ -2,10 +2,10 @@
 
 use super::{
     BLOCK, Clusters, Keeping, Moving, Output,
-    blocks::Octet,
     lennard_jones::{Kernel, Law, Plain, Typed},
     list::Pairs,
     quad::{CLUSTER, own_pairs},
+    sums::Parts,
 };
 use crate::{Grid, Input, InputRadii, Structure, lanes::Isa, physics::Physics, testing::uniform_points};
 use nearfield_core::{
@@ -272,7 +272,7 @@ fn batches_find_the_pairs_of_lists_and_give_their_forces() {
 /// Forces and energies of the blocks' particles by one law and instruction set.
 fn by_vectors<P: Law>(isa: Isa, built: &Built, law: P) -> Vec<[f64; 6]> {
     let Clusters { blocks, list, .. } = &built.clusters;
-    let zeros = vec![Octet::default(); blocks.len()];
+    let zeros = vec![Parts::default(); blocks.len()];
     let (mut force, mut energy, mut only) = (zeros.clone(), zeros.clone(), zeros);
     for task in &list.tasks {
         let list = &task.inner;
@@ -284,9 +284,10 @@ fn by_vectors<P: Law>(isa: Isa, built: &Built, law: P) -> Vec<[f64; 6]> {
     for b in 0..blocks.len() {
         for (lane, i) in blocks.particles(b).enumerate() {
             for k in 0..3 {
-                assert_eq!(force[b].0[k][lane], only[b].0[k][lane], "{isa:?}: energies change forces");
-                sums[i][k] = f64::from(force[b].0[k][lane] * law.scale());
-                sums[i][3 + k] = f64::from(energy[b].0[k][lane]);
+                let sum = |of: &[Parts]| of[b].0[k][lane] + of[b].0[k][lane + BLOCK];
+                assert_eq!(sum(&force), sum(&only), "{isa:?}: energies change forces");
+                sums[i][k] = f64::from(sum(&force) * law.scale());
+                sums[i][3 + k] = f64::from(sum(&energy));
             }
             sums[i][3] *= f64::from(law.scale());
             sums[i][4] *= f64::from(law.scale());

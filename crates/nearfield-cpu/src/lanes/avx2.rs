@@ -192,8 +192,9 @@ impl Lanes for V3 {
     }
 
     #[inline(always)]
-    fn add_halves(self, a: [__m256; 2], to: &mut [f32; 8]) {
-        *to = cast(self.avx._mm256_add_ps(cast(*to), self.avx._mm256_add_ps(a[0], a[1])));
+    fn add_to_parts(self, a: [__m256; 2], to: &mut [f32; 16]) {
+        let [one, other]: [__m256; 2] = cast(*to);
+        *to = cast([self.avx._mm256_add_ps(one, self.avx._mm256_add_ps(a[0], a[1])), other]);
     }
 
     #[inline(always)]

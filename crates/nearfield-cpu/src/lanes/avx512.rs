@@ -2,7 +2,7 @@
 
 use super::Lanes;
 use pulp::{cast, x86::V4};
-use std::arch::x86_64::{__m256, __m512, __m512i, _CMP_LT_OQ};
+use std::arch::x86_64::{__m512, __m512i, _CMP_LT_OQ};
 
 /// In each quarter, the sums of two pairs of `a` and of two of `b`.
 #[inline(always)]
@@ -150,10 +150,8 @@ impl Lanes for V4 {
     }
 
     #[inline(always)]
-    fn add_halves(self, a: __m512, to: &mut [f32; 8]) {
-        let low = self.avx512f._mm512_castps512_ps256(a);
-        let high: __m256 = cast(self.avx512f._mm512_extractf64x4_pd::<1>(cast(a)));
-        *to = cast(self.avx._mm256_add_ps(cast(*to), self.avx._mm256_add_ps(low, high)));
+    fn add_to_parts(self, a: __m512, to: &mut [f32; 16]) {
+        *to = cast(self.avx512f._mm512_add_ps(cast(*to), a));
     }
 
     #[inline(always)]

@@ -67,8 +67,9 @@ pub(crate) trait Lanes: Copy {
     fn halves(self, low: f32, high: f32) -> Self::F;
     /// Each of four values in eight lanes.
     fn quarters(self, four: &[f32; 4]) -> [Self::F; 2];
-    /// Adds lanes 0 to 7 and lanes 8 to 15 to eight values.
-    fn add_halves(self, a: Self::F, to: &mut [f32; 8]);
+    /// Adds to eight sums, each kept in two parts: what is in lanes k and k + 8 to elements k and k + 8, or all of it to
+    /// element k where that is quicker.
+    fn add_to_parts(self, a: Self::F, to: &mut [f32; 16]);
     /// Sums of lanes 0 to 7 and of lanes 8 to 15, of `a` and then of `b`, for each axis.
     fn sum_halves(self, a: [Self::F; 3], b: [Self::F; 3]) -> [[f32; 4]; 3];
     /// `low[index]` in lanes 0 to 7, `high[index]` in lanes 8 to 15. Indices are below 8.

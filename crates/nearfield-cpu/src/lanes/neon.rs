@@ -205,10 +205,11 @@ impl Lanes for Neon {
     }
 
     #[inline(always)]
-    fn add_halves(self, a: F, to: &mut [f32; 8]) {
+    fn add_to_parts(self, a: F, to: &mut [f32; 16]) {
         let v = self.neon;
-        let [low, high] = cast(*to);
-        *to = cast([v.vaddq_f32(low, v.vaddq_f32(a[0], a[2])), v.vaddq_f32(high, v.vaddq_f32(a[1], a[3]))]);
+        let [low, high, others @ ..]: F = cast(*to);
+        let (low, high) = (v.vaddq_f32(low, v.vaddq_f32(a[0], a[2])), v.vaddq_f32(high, v.vaddq_f32(a[1], a[3])));
+        *to = cast([low, high, others[0], others[1]]);
     }
 
     #[inline(always)]

@@ -154,8 +154,10 @@ impl Lanes for Portable {
     }
 
     #[inline(always)]
-    fn add_halves(self, a: [f32; 16], to: &mut [f32; 8]) {
-        *to = from_fn(|k| to[k] + (a[k] + a[k + 8]));
+    fn add_to_parts(self, a: [f32; 16], to: &mut [f32; 16]) {
+        for k in 0..8 {
+            to[k] += a[k] + a[k + 8];
+        }
     }
 
     #[inline(always)]

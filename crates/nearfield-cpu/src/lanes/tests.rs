@@ -47,9 +47,6 @@ impl Kernel for Everything<'_> {
             l.compress(u16::MAX, value, &mut out);
             bits.extend(out.iter().map(|x| if x.is_nan() { 1 } else { x.to_bits() }));
         }
-        let mut eight = halves[1];
-        l.add_halves(b, &mut eight);
-        bits.extend(eight.map(f32::to_bits));
         let mut out_u = [0; 16];
         l.compress_u(u16::MAX, v, &mut out_u);
         bits.extend(out_u);
@@ -145,5 +142,32 @@ fn reciprocals_outside_the_mask_are_zero_even_of_what_has_none() {
         let [inside, outside @ ..] = isa.run(Reciprocals(&values, 1));
         assert!((inside - 0.25).abs() < 1e-6, "{isa:?}: {inside}");
         assert_eq!(outside.map(f32::to_bits), [0; 15], "{isa:?}");
+    }
+}
+
+/// Sixteen values added to eight sums that are kept in two parts.
+struct Added<'a>(&'a [f32; 16], [f32; 16]);
+
+impl Kernel for Added<'_> {
+    type Output = [f32; 16];
+
+    #[inline(always)]
+    fn run<L: Lanes>(mut self, l: L) -> [f32; 16] {
+        l.add_to_parts(l.load(self.0), &mut self.1);
+        self.1
+    }
+}
+
+#[test]
+fn what_is_added_to_a_sum_of_two_parts_is_in_one_or_the_other() {
+    // All sums are exact.
+    let values: [f32; 16] = std::array::from_fn(|k| (3 * k) as f32);
+    let before: [f32; 16] = std::array::from_fn(|k| 100.0 + k as f32);
+    for isa in Isa::available() {
+        let after = isa.run(Added(&values, before));
+        for k in 0..8 {
+            let expected = before[k] + before[k + 8] + values[k] + values[k + 8];
+            assert_eq!(after[k] + after[k + 8], expected, "{isa:?}: sum {k}");
+        }
     }
 }
