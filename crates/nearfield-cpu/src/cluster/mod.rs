@@ -37,7 +37,7 @@ use crate::{Grid, Slots, lanes::Isa, physics::Physics};
 use blocks::Blocks;
 use list::{PairList, Reach, TASKS_PER_THREAD};
 use motion::Due;
-use nearfield_core::{Truncation, potentials::Potential, skin::ListIntervals};
+use nearfield_core::{ParticleType, Truncation, potentials::Potential, skin::ListIntervals};
 use std::ops::Range;
 pub(crate) use sums::Output;
 
@@ -52,7 +52,11 @@ const SPARSE: u64 = 4;
 pub(crate) struct Moving<'a> {
     pub position: [&'a [f32]; 3],
     pub velocity: [&'a [f32]; 3],
+    /// The last ones that were computed; empty where there are none.
+    pub force: [&'a [f32]; 3],
     pub kind: &'a [u32],
+    /// Their masses count where there are forces.
+    pub types: &'a [ParticleType],
     pub dt: f32,
 }
 

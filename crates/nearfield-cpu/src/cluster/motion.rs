@@ -15,7 +15,7 @@ use nearfield_core::{predicate::conservative_range, skin::ListIntervals};
 use rayon::prelude::*;
 
 /// Evaluations that an inner list is meant to serve.
-const HORIZON: f32 = 5.0;
+const HORIZON: f32 = 7.0;
 
 /// Least part of the budget it wants that a particle must be left by the outer list.
 const LEAST_BUDGET: f32 = 0.25;
@@ -33,7 +33,7 @@ const LEAST_FAR: f32 = 1e-3;
 pub(super) struct Motion {
     /// Farthest from its midway that a particle may be before the outer list is outrun; negative when nothing may move.
     limit: f32,
-    /// Budget for what velocities do not foretell.
+    /// Budget for what velocities and forces do not foretell.
     surprise: f32,
     /// Evaluations that the last outer list served.
     pub life: u32,
@@ -105,8 +105,8 @@ impl Blocks {
         });
     }
 
-    /// Gives each particle a budget of displacement for the next few evaluations, by its velocity and no more than what
-    /// the outer list leaves it. False when that is too little for some particle.
+    /// Gives each particle a budget of displacement for the next few evaluations, by its velocity and the last force on it,
+    /// and no more than what the outer list leaves it. False when that is too little for some particle.
     pub fn plan_motion(&mut self, moving: Moving) -> bool {
         // Whoever has crossed a face, for now, may come back and cross it again: it is not far from its new midway then.
         for (crossed, crossings) in self.crossed.iter_mut().zip(&self.crossings) {
@@ -125,27 +125,24 @@ impl Blocks {
         motion.since_prune = 0;
         let Self { first, position, midway, crossings, period, budget, midway_of_inner, motion, .. } = self;
         let (first, position, midway, crossings) = (&*first, &*position, &*midway, &*crossings);
-        let (limit, surprise, period, dt) = (motion.limit, motion.surprise, *period, moving.dt);
+        let (limit, surprise, period) = (motion.limit, motion.surprise, *period);
         let pages = budget.par_chunks_mut(PAGE).zip(midway_of_inner.par_chunks_mut(PAGE)).enumerate();
         let enough = pages.map(|(page, (budget, midway_of_inner))| {
             let blocks = page * PAGE..page * PAGE + budget.len();
             let (position, midway) = (&position[blocks.clone()], &midway[blocks.clone()]);
             let (first, crossings) = (&first[blocks.start..=blocks.end], &crossings[blocks]);
-            let velocity = moving.velocity;
-            let plan = Plan {
+            super::isa().run(Plan {
                 first,
-                velocity,
+                moving,
                 position,
                 midway,
                 crossings,
                 period,
                 limit,
                 surprise,
-                dt,
                 budget,
                 midway_of_inner,
-            };
-            super::isa().run(plan)
+            })
         });
         enough.reduce(|| true, |a, b| a & b)
     }
@@ -206,14 +203,13 @@ impl Blocks {
 /// See [`Blocks::plan_motion`].
 struct Plan<'a> {
     first: &'a [u32],
-    velocity: [&'a [f32]; 3],
+    moving: Moving<'a>,
     position: &'a [Octet],
     midway: &'a [Octet],
     crossings: &'a [Octet],
     period: [f32; 3],
     limit: f32,
     surprise: f32,
-    dt: f32,
     budget: &'a mut [[f32; BLOCK]],
     midway_of_inner: &'a mut [Octet],
 }
@@ -224,44 +220,64 @@ impl lanes::Kernel for Plan<'_> {
 
     #[inline(always)]
     fn run<L: lanes::Lanes>(self, _: L) -> bool {
-        let (horizon, mut enough) = (HORIZON * self.dt, true);
+        let Moving { velocity, force, kind, types, dt, .. } = self.moving;
+        // To the middle of the horizon. Velocities are those of half a step ago.
+        let time = 0.5 * HORIZON * dt;
+        let time2 = time * (time + dt);
+        let forces = !force[0].is_empty();
+        let mut enough = true;
         for k in 0..self.position.len() {
             let particles = self.first[k] as usize..self.first[k + 1] as usize;
             let n = particles.len();
-            let mut velocity = [[0.0f32; BLOCK]; 3];
-            let (mut speed, mut gone, mut ahead) = ([0.0f32; BLOCK], [0.0f32; BLOCK], [0.0f32; BLOCK]);
+            let mut inverse_mass = [if forces { types[0].mass.recip() } else { 0.0 }; BLOCK];
+            if forces && !kind.is_empty() {
+                for (inverse_mass, &kind) in inverse_mass.iter_mut().zip(&kind[particles.clone()]) {
+                    *inverse_mass = types[kind as usize].mass.recip();
+                }
+            }
+            let mut going = [[0.0f32; BLOCK]; 3];
+            let (mut speed, mut acceleration) = ([0.0f32; BLOCK], [0.0f32; BLOCK]);
+            let (mut there, mut gone, mut ahead) = ([0.0f32; BLOCK], [0.0f32; BLOCK], [0.0f32; BLOCK]);
             for axis in 0..3 {
-                let v = &mut velocity[axis];
-                copy(&self.velocity[axis][particles.clone()], v);
+                let (mut v, mut a) = ([0.0; BLOCK], [0.0; BLOCK]);
+                copy(&velocity[axis][particles.clone()], &mut v);
+                if forces {
+                    copy(&force[axis][particles.clone()], &mut a);
+                }
                 for lane in 0..BLOCK {
+                    a[lane] *= inverse_mass[lane];
+                    going[axis][lane] = time * v[lane] + 0.5 * time2 * a[lane];
                     let x = self.position[k].0[axis][lane] + self.crossings[k].0[axis][lane] * self.period[axis];
                     let d = x - self.midway[k].0[axis][lane];
-                    let later = d + 0.5 * horizon * v[lane];
+                    let later = d + going[axis][lane];
                     speed[lane] += v[lane] * v[lane];
+                    acceleration[lane] += a[lane] * a[lane];
+                    there[lane] += going[axis][lane] * going[axis][lane];
                     gone[lane] += d * d;
                     ahead[lane] += later * later;
                 }
             }
-            let mut time = [0.0f32; BLOCK];
+            let mut expected = [false; BLOCK];
             let mut short = 0;
             for lane in 0..BLOCK {
-                let reach = horizon * speed[lane].sqrt();
-                let (wanted, wanted_here) = (0.5 * reach + self.surprise, reach + self.surprise);
+                // Who is accelerated is farther from its midway in the end than now, by no more than `bend`.
+                let bend = time2 * acceleration[lane].sqrt();
+                let wanted = there[lane].sqrt() + bend + self.surprise;
+                let wanted_here = 2.0 * (time * speed[lane].sqrt() + bend) + self.surprise;
                 let (left, left_here) = (self.limit - ahead[lane].sqrt(), self.limit - gone[lane].sqrt());
                 // Who is near its limit is not expected ahead: whoever is may have nothing left where it is.
-                let expected = left >= wanted;
-                time[lane] = if expected { 0.5 * horizon } else { 0.0 };
+                expected[lane] = left >= wanted;
                 let here = if wanted_here < left_here { wanted_here } else { left_here };
                 let here = if here > 0.0 { here } else { 0.0 };
-                let budget = if expected { wanted } else { here };
+                let budget = if expected[lane] { wanted } else { here };
                 self.budget[k][lane] = if lane < n { budget } else { UNMOVED };
-                let lacks = !expected & (left_here < LEAST_BUDGET * wanted_here) & (lane < n);
+                let lacks = !expected[lane] & (left_here < LEAST_BUDGET * wanted_here) & (lane < n);
                 short |= u32::from(lacks);
             }
             for axis in 0..3 {
                 for lane in 0..BLOCK {
                     let x = self.position[k].0[axis][lane];
-                    self.midway_of_inner[k].0[axis][lane] = x + time[lane] * velocity[axis][lane];
+                    self.midway_of_inner[k].0[axis][lane] = if expected[lane] { x + going[axis][lane] } else { x };
                 }
             }
             enough &= short == 0;

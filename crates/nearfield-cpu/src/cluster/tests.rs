@@ -37,7 +37,7 @@ fn gas(n: usize, lengths: [f32; 3], boundary: Boundary, cutoff: f32, seed: u64) 
 /// Particles that move by a tenth of a unit or less in a step.
 fn moving(particles: &Particles) -> Moving<'_> {
     let [position, velocity] = [&particles.position, &particles.velocity].map(|of| of.axes().map(|axis| &axis[..]));
-    Moving { position, velocity, kind: &[], dt: 0.02 }
+    Moving { position, velocity, force: [&[]; 3], kind: &[], types: &[], dt: 0.02 }
 }
 
 /// `life` is how many steps the list is thought to serve.

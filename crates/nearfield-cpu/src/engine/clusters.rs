@@ -116,12 +116,13 @@ impl StoredClusters {
 impl Loaded {
     /// Brings the list up to date with the positions, or the grid where there can be no list.
     pub fn prepare_clusters(&mut self, step: u64) {
-        let Self { physics, state, upkeep, clusters: stored, report, skin, dt, steps, .. } = self;
+        let Self { physics, state, results, upkeep, clusters: stored, report, skin, dt, steps, .. } = self;
         stored.age += 1;
         let start = Instant::now();
         let list = stored.listing == Listing::Possible;
         let calm = || stored.tolerance.as_ref().is_none_or(|tolerance| tolerance.allows(state));
-        let serves = list && stored.clusters.refresh(state.moving_slices(*dt), calm);
+        let moving = state.moving_slices(&results.force, &physics.interaction.types, *dt);
+        let serves = list && stored.clusters.refresh(moving, calm);
         report.refit_seconds += start.elapsed().as_secs_f64();
         if serves {
             return;
@@ -144,12 +145,12 @@ impl Loaded {
                 return;
             }
         }
-        let Self { plan, physics, state, upkeep, clusters: stored, report, skin, dt, steps, .. } = self;
+        let Self { plan, physics, state, results, upkeep, clusters: stored, report, skin, dt, steps, .. } = self;
         if stored.listing != Listing::DifferentRadii {
             let grid = upkeep.index.grid().expect("cluster has a grid");
-            // Forces are computed anew before they are looked at.
             state.reorder(grid.order());
-            let moving = state.moving_slices(*dt);
+            results.reorder(grid.order());
+            let moving = state.moving_slices(&results.force, &physics.interaction.types, *dt);
             let budget = plan.memory_budget.min(MOST_BYTES * state.len() as u64);
             let strict = |skin: &SkinTuner| Keeping::Strict { skin: skin.skin() };
             let mut keeping = tolerant.map_or_else(|| strict(skin), Keeping::Tolerant);
@@ -263,7 +264,7 @@ struct Verlet<'a> {
     step: u64,
     position: [Scattered<'a, f32>; 3],
     velocity: [Scattered<'a, f32>; 3],
-    /// Written where it may not be finite.
+    /// Where the next list is pruned it tells how particles will move.
     force: [Scattered<'a, f32>; 3],
     image: Scattered<'a, [i32; 3]>,
     kind: &'a [u32],
@@ -277,6 +278,13 @@ impl Mover for Verlet<'_> {
     fn advance(&self, particles: Range<usize>, force: &[[f32; BLOCK]; 3], position: &mut [[f32; BLOCK]; 3]) {
         // SAFETY: no two blocks have a particle in common, and each is moved once.
         let ([x, y, z], [vx, vy, vz]) = unsafe { (axes(&self.position, &particles), axes(&self.velocity, &particles)) };
+        // SAFETY: as above.
+        for (to, force) in unsafe { axes(&self.force, &particles) }.into_iter().zip(force) {
+            match to.first_chunk_mut() {
+                Some(to) => *to = *force,
+                None => to.copy_from_slice(&force[..to.len()]),
+            }
+        }
         let kind = self.kind.get(particles.clone()).unwrap_or(&[]);
         if let (Some(x), Some(y), Some(z)) = (x.first_chunk_mut(), y.first_chunk_mut(), z.first_chunk_mut())
             && let (Some(vx), Some(vy), Some(vz)) = (vx.first_chunk_mut(), vy.first_chunk_mut(), vz.first_chunk_mut())
@@ -352,13 +360,12 @@ impl Verlet<'_> {
             self.integrator.start(&mut p, force, kind, id, self.step + 1);
             self.positions.see(p.position, id);
             *image = p.image;
-            for (axis, force) in force.into_iter().enumerate() {
+            for axis in 0..3 {
                 position[axis][lane] = p.position[axis];
                 // SAFETY: as in `advance`.
                 unsafe {
                     self.position[axis].write(i, p.position[axis]);
                     self.velocity[axis].write(i, p.velocity[axis]);
-                    self.force[axis].write(i, force);
                 }
             }
         }

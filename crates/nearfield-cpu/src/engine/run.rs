@@ -3,6 +3,7 @@
 use super::{
     evaluate::{Loaded, NonFiniteWatch},
     integrate::{Integrator, Moving},
+    results::Results,
     state::State,
     thermostat,
 };
@@ -25,7 +26,7 @@ impl Loaded {
         self.dt = dynamics.dt;
         self.physics.cap = if dynamics.max_displacement > 0.0 { OVERLAP_CAP } else { f32::INFINITY };
         if self.plan.method == Method::Cluster && !self.plan.deterministic && self.clusters.forget_if_ended() {
-            self.forces_valid = false;
+            (self.forces_valid, self.results) = (false, Results::default());
         }
         if !self.forces_valid || steps == 0 {
             let wanted = if steps == 0 { quantities } else { Quantities::FORCES };
