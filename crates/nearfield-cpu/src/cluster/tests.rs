@@ -227,6 +227,41 @@ fn no_pair_is_missed_while_particles_move_and_cross_faces() {
     }
 }
 
+/// How often lists are pruned while particles fall from rest for some steps, with forces known or not.
+fn prunings_of_a_fall(forces_known: bool) -> u64 {
+    let mut system = gas(300, [5.0, 6.0, 7.0], Boundary::Periodic, 1.5, 5);
+    system.particles.velocity = Vec3s::zeros(300);
+    let types = [ParticleType { mass: 0.5, ..ParticleType::default() }];
+    let mut built = build(system, 0.6, 0);
+    // An acceleration of ten along x.
+    let (force, zero) = ([5.0; 300], [0.0; 300]);
+    let force = if forces_known { [&force[..], &zero, &zero] } else { [&[][..]; 3] };
+    for step in 0..6 {
+        let particles = &mut built.system.particles;
+        for i in (0..300).filter(|_| step > 0) {
+            let ([x, y, z], v) = (particles.position.get(i), 0.2 * (step as f32 - 0.5));
+            particles.velocity.set(i, [v, 0.0, 0.0]);
+            particles.position.set(i, built.system.sim_box.wrap([x + 0.02 * v, y, z]).0);
+        }
+        let moving = Moving { force, types: &types, ..moving(particles) };
+        if step == 0 {
+            assert!(built.clusters.blocks.plan_motion(moving));
+            built.clusters.prune();
+        } else {
+            assert!(built.clusters.refresh(moving, || true));
+        }
+        assert_eq!(evaluate(&mut built, None).0, neighbors_by_oracle(&built.system), "at step {step}");
+    }
+    built.clusters.prunings
+}
+
+#[test]
+fn lists_are_pruned_less_often_where_forces_are_known() {
+    let (known, unknown) = (prunings_of_a_fall(true), prunings_of_a_fall(false));
+    assert_eq!(known, 2, "when they are made, and once by the test");
+    assert!(unknown > known, "{unknown}");
+}
+
 /// The list is pruned while a particle is beyond the face.
 #[test]
 fn a_particle_that_crosses_a_face_to_and_fro_keeps_its_pairs() {

@@ -360,12 +360,12 @@ impl Verlet<'_> {
             self.integrator.start(&mut p, force, kind, id, self.step + 1);
             self.positions.see(p.position, id);
             *image = p.image;
-            for axis in 0..3 {
-                position[axis][lane] = p.position[axis];
+            for (axis, (x, v)) in p.position.into_iter().zip(p.velocity).enumerate() {
+                position[axis][lane] = x;
                 // SAFETY: as in `advance`.
                 unsafe {
-                    self.position[axis].write(i, p.position[axis]);
-                    self.velocity[axis].write(i, p.velocity[axis]);
+                    self.position[axis].write(i, x);
+                    self.velocity[axis].write(i, v);
                 }
             }
         }
