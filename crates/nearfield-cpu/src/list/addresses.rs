@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
 /// Bits of an address that hold a place in a stream.
 const PLACE_BITS: u32 = 40;
 
-/// The row of a particle: task, stream and first entry, and number of entries. Next to each other, as they are written together
-/// in no order.
+/// The row of a particle: task, stream and first entry, and number of entries. Next to each other, for they are written
+/// together, in no order.
 #[derive(Debug, Default)]
 struct Address {
     place: AtomicU64,
