@@ -16,6 +16,7 @@ mod lanes;
 mod list;
 mod parallel;
 mod physics;
+mod prefetch;
 mod search;
 mod slots;
 mod sparse;

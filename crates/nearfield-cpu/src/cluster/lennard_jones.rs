@@ -10,6 +10,7 @@ use super::{
 use crate::{
     lanes::{self, Lanes},
     physics::Physics,
+    prefetch::prefetch,
 };
 use nearfield_core::{Truncation, interaction::PairCoefficients};
 
@@ -171,6 +172,11 @@ const HERE: u8 = 0;
 const IMAGE: u8 = 1;
 const CROSSED: u8 = 2;
 
+/// A block is fetched while so many before it in a list are searched, in systems of more blocks than fit the cache of a core
+/// with their sums.
+const AHEAD: usize = 3;
+const CACHED: usize = 1 << 14;
+
 /// Adds the forces of the pairs of `list` to `force`, and where `ENERGY` their energies, virials and number to
 /// `energy`, all over the law's scale.
 pub(super) struct Kernel<'a, P, const ENERGY: bool> {
@@ -212,11 +218,13 @@ impl<P: Law, const ENERGY: bool> lanes::Kernel for Kernel<'_, P, ENERGY> {
             // As if somebody else might change it, so that it is read from the cache: registers are for sums.
             let position = quad::position(lanes, view.position, cluster);
             let position = std::hint::black_box(&position);
+            // The second cluster of a block has nearly the first one's list, which is in the cache then.
+            let ahead = if at == 0 && n > CACHED { AHEAD } else { usize::MAX };
             let zero = [[lanes.splat(0.0); 3]; VECTORS];
             let mut sums = Sums { force: zero, energy: zero };
             for segment in segments {
                 let quad = Quad::new(lanes, blocks, cluster, segment.image);
-                let of = Four { position, quad, kinds };
+                let of = Four { position, ahead, quad, kinds };
                 let listed = &list.blocks[segment.start as usize..segment.end as usize];
                 let [first, second] = if segment.own { own_pairs(cluster) } else { [u16::MAX; VECTORS] };
                 let pairs = [lanes.mask(first), lanes.mask(second)];
@@ -258,6 +266,8 @@ impl<P: Law, const ENERGY: bool> lanes::Kernel for Kernel<'_, P, ENERGY> {
 /// A cluster.
 struct Four<'a, L: Lanes> {
     position: &'a Position<L>,
+    /// How many blocks on those are that are to be fetched.
+    ahead: usize,
     quad: Quad<L>,
     kinds: [u32; CLUSTER],
 }
@@ -321,6 +331,10 @@ impl<P: Law, L: Lanes> View<'_, P, L> {
         let Some(j) = self.next::<SHIFT>(&mut listed, apart) else { return sums };
         let mut near = self.search::<SHIFT, true>(of, j, pairs);
         while let Some(j) = self.next::<SHIFT>(&mut listed, apart) {
+            if let Some(&ahead) = listed.as_slice().get(of.ahead) {
+                prefetch(&self.position[ahead as usize]);
+                prefetch(&to.force[ahead as usize]);
+            }
             let next = self.search::<SHIFT, false>(of, j, pairs);
             sums = self.add::<ENERGY>(of.kinds, near, sums, to);
             near = next;

@@ -22,22 +22,6 @@ fn copy_by<const N: usize>(from: &[u32], to: &mut [u32]) {
     }
 }
 
-/// Has elements from `at` on fetched into the cache, where the processor takes such hints: two lines, after which it sees
-/// by itself what is read.
-#[inline(always)]
-pub(super) fn prefetch(values: &[u32], at: usize) {
-    #[cfg(target_arch = "x86_64")]
-    for at in [at, at + 16] {
-        if let Some(value) = values.get(at) {
-            use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-            // SAFETY: all processors of this architecture have the instruction, and it reads nothing.
-            unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(value).cast()) };
-        }
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    let _ = (values, at);
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -50,7 +34,6 @@ mod tests {
             copy(&from[..n], &mut to[1..=n]);
             assert_eq!(to[1..=n], from[..n]);
             assert_eq!([to[0], to[n + 1]], [0, 0]);
-            prefetch(&from, n);
         }
     }
 }

@@ -1,9 +1,10 @@
 //! One contiguous list out of the rows of many tasks.
 
 use super::addresses::{Addresses, Place};
-use super::copy::{copy, prefetch};
+use super::copy::copy;
 use super::rows::{Contents, Queries, Rows};
 use super::{Rule, mirror};
+use crate::prefetch::prefetch;
 use crate::{Input, Structure};
 use nearfield_core::{ListKind, ListRequest, NeighborList, SimBox};
 use rayon::prelude::*;
@@ -20,6 +21,9 @@ const LEAST_ROWS: usize = 2048;
 
 /// Rows are fetched so many rows before they are copied: they lie anywhere in memory.
 const AHEAD: usize = 12;
+
+/// Entries of a row that are fetched: the processor sees by itself that what follows is read, too.
+const FETCHED: usize = 32;
 
 /// Builds neighbour lists, keeping its buffers from one to the next: first use of a page of memory costs more than
 /// filling it.
@@ -241,7 +245,9 @@ impl<'a> Columns<'a> {
         for (k, i) in rows.clone().enumerate() {
             if i + AHEAD < rows.end {
                 let (from, stream, start) = source(i + AHEAD);
-                prefetch(from.indices(stream), start);
+                if let Some(row) = from.indices(stream)[start..].first_chunk::<FETCHED>() {
+                    prefetch(row);
+                }
             }
             let extent = self.extent(k);
             let (from, stream, start) = source(i);
