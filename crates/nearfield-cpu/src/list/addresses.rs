@@ -1,6 +1,6 @@
 //! Where the row of each particle is, among the rows of all tasks.
 
-use super::rows::Rows;
+use super::rows::{Rows, TOGETHER};
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
 
 /// Bits of an address that hold a place in a stream.
@@ -14,7 +14,7 @@ struct Address {
     length: AtomicU32,
 }
 
-/// Where a row is: one of the two streams of a task, and its first entry there.
+/// Where a row is: one of the streams of a task, and its first entry there.
 #[derive(Clone, Copy)]
 pub(super) struct Place {
     pub task: usize,
@@ -37,7 +37,7 @@ impl Addresses {
         for k in 0..rows.len() {
             let (particle, extent) = rows.extent(k);
             let address = &self.0[particle as usize];
-            let stream = 2 * task + k % 2;
+            let stream = TOGETHER * task + k % TOGETHER;
             address.place.store((stream as u64) << PLACE_BITS | extent.start as u64, Relaxed);
             address.length.store(extent.len() as u32, Relaxed);
         }
@@ -48,7 +48,7 @@ impl Addresses {
     pub fn of(&self, i: usize) -> Place {
         let place = self.0[i].place.load(Relaxed);
         let stream = (place >> PLACE_BITS) as usize;
-        Place { task: stream / 2, stream: stream % 2, first: (place & ((1 << PLACE_BITS) - 1)) as usize }
+        Place { task: stream / TOGETHER, stream: stream % TOGETHER, first: (place & ((1 << PLACE_BITS) - 1)) as usize }
     }
 
     /// Number of entries of each row.

@@ -58,6 +58,9 @@ pub struct Row<'a> {
     pub r2: &'a [f32],
 }
 
+/// Rows that are written at a time, each to a stream of its own: candidates are read once for their queries.
+pub(super) const TOGETHER: usize = 2;
+
 /// Rows as two streams, even ones in the first and odd ones in the second: two rows are written at a time, the length of
 /// neither of which is known before.
 #[derive(Clone, Debug, Default)]
@@ -66,7 +69,7 @@ pub(super) struct Output {
     contents: Contents,
     particle: Vec<u32>,
     ends: Vec<usize>,
-    streams: [Stream; 2],
+    streams: [Stream; TOGETHER],
 }
 
 /// Rows as one array after the other. Arrays but `images` are longer than what they hold: stores write whole chunks, and
@@ -84,7 +87,7 @@ pub(super) struct Room<'a> {
     pub n_rows: &'a mut usize,
     pub particle: &'a mut [u32],
     pub ends: &'a mut [usize],
-    pub streams: &'a mut [Stream; 2],
+    pub streams: &'a mut [Stream; TOGETHER],
 }
 
 impl Output {
@@ -105,7 +108,7 @@ impl Output {
         make_room(ends, *n_rows + n);
         if let Contents::Rows { distances, .. } = *contents {
             for stream in &mut *streams {
-                let needed = stream.len + n.div_ceil(2) * most + LANES;
+                let needed = stream.len + n.div_ceil(TOGETHER) * most + LANES;
                 make_room(&mut stream.indices, needed);
                 if distances {
                     make_room(&mut stream.r2, needed);
@@ -183,10 +186,10 @@ impl Rows {
         self.output.streams.iter().map(|stream| stream.len).sum()
     }
 
-    /// Particle and extent of row `k`, in stream `k % 2`.
+    /// Particle and extent of row `k`, in stream `k % TOGETHER`.
     #[inline(always)]
     pub(super) fn extent(&self, k: usize) -> (u32, Range<usize>) {
-        let start = if k < 2 { 0 } else { self.output.ends[k - 2] };
+        let start = if k < TOGETHER { 0 } else { self.output.ends[k - TOGETHER] };
         (self.output.particle[k], start..self.output.ends[k])
     }
 
@@ -199,7 +202,7 @@ impl Rows {
     #[inline(always)]
     pub(crate) fn at(&self, k: usize) -> Row<'_> {
         let (particle, extent) = self.extent(k);
-        self.row(particle, k % 2, extent)
+        self.row(particle, k % TOGETHER, extent)
     }
 
     #[inline(always)]

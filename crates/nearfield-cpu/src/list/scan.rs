@@ -1,6 +1,6 @@
 //! The kernel: candidates tested against each query of a group, those within range appended to its row.
 
-use super::rows::{Contents, Output, Queries, Room, Rows, Stream};
+use super::rows::{Contents, Output, Queries, Room, Rows, Stream, TOGETHER};
 use super::rule::{Acting, Bipartite, Full, Half, Keep, Lane, Query, Rule};
 use crate::candidates::{Candidates, Segment};
 use crate::lanes::{Kernel, Lanes};
@@ -58,9 +58,6 @@ struct Group<'a> {
     candidates: &'a Candidates,
     contents: Contents,
 }
-
-/// Queries that are scanned together: candidates are read once for both.
-const TOGETHER: usize = 2;
 
 impl Group<'_> {
     #[inline(always)]
