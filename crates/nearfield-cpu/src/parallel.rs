@@ -33,6 +33,18 @@ impl<'a, T: Copy> Scattered<'a, T> {
         unsafe { *self.0[i].get() = value };
     }
 
+    /// The `N` elements from `start` on.
+    ///
+    /// # Safety
+    /// As for [`Scattered::range`].
+    #[expect(clippy::mut_from_ref, reason = "as for `range`")]
+    #[inline(always)]
+    pub unsafe fn chunk<const N: usize>(&self, start: usize) -> &mut [T; N] {
+        let cells = &self.0[start..start + N];
+        // SAFETY: as below, and there are N of them.
+        unsafe { &mut *UnsafeCell::raw_get(cells.as_ptr()).cast() }
+    }
+
     /// Elements `range`.
     ///
     /// # Safety

@@ -1,7 +1,7 @@
 //! Particles in blocks of eight, sorted in space.
 
 use super::{BLOCK, Keeping, Moving, motion::Motion, padding};
-use crate::{Grid, physics::Physics};
+use crate::{Grid, parallel::Scattered, physics::Physics};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -120,6 +120,18 @@ impl Blocks {
         self.crossings.par_iter_mut().with_min_len(4096).for_each(|c| *c = Octet::default());
         self.crossed.fill(false);
         self.begin_motion(moving, keeping);
+    }
+
+    /// Copies where particles are, in their order.
+    pub fn copy_positions(&self, to: [&mut [f32]; 3]) {
+        let to = to.map(Scattered::new);
+        self.position.par_iter().with_min_len(PAGE).enumerate().for_each(|(b, position)| {
+            let particles = self.particles(b);
+            for (to, from) in to.iter().zip(&position.0) {
+                // SAFETY: no two blocks have a particle in common.
+                unsafe { to.range(particles.clone()) }.copy_from_slice(&from[..particles.len()]);
+            }
+        });
     }
 
     /// Bytes held.

@@ -37,7 +37,7 @@ use crate::{Grid, Slots, lanes::Isa, physics::Physics};
 use blocks::Blocks;
 use list::{PairList, Reach, TASKS_PER_THREAD};
 use motion::Due;
-use nearfield_core::{ParticleType, Truncation, potentials::Potential, skin::ListIntervals};
+use nearfield_core::{ParticleType, Truncation, Vec3s, potentials::Potential, skin::ListIntervals};
 use std::ops::Range;
 pub(crate) use sums::Output;
 
@@ -72,6 +72,8 @@ pub(crate) struct Clusters {
     prunings: u64,
     /// Whether all particles keep to their budgets, where that was found out when they moved.
     kept: Option<bool>,
+    /// Whether particles have moved since their positions were fetched.
+    moved: bool,
 }
 
 /// How a list is kept.
@@ -109,7 +111,8 @@ pub(crate) struct Counts {
 
 /// Moves particles.
 pub(crate) trait Mover: Sync {
-    /// Moves `particles`, all those of a block, from `position` by `force`. Implementations are `#[inline(always)]`.
+    /// Moves `particles`, all those of a block, from `position` by `force`, and leaves there where they are then.
+    /// Implementations are `#[inline(always)]`.
     fn advance(&self, particles: Range<usize>, force: &[[f32; BLOCK]; 3], position: &mut [[f32; BLOCK]; 3]);
 }
 
@@ -197,11 +200,30 @@ impl Clusters {
         }
     }
 
-    /// Computes forces, has particles moved by them, and takes their new positions, all where there is a list and a law
-    /// for vectors ([`has_vector_law`]). The next [`Clusters::refresh`] need not look at positions again.
+    /// Computes forces and has particles moved by them, all where there is a list and a law for vectors
+    /// ([`has_vector_law`]). Their new positions stay here, and the next [`Clusters::refresh`] need not look at others,
+    /// until they are asked for ([`Clusters::fetch_positions`]).
     pub fn advance<M: Mover>(&mut self, physics: &Physics, mover: &M) {
         let scale = self.compute(physics, None, false);
         self.kept = Some(self.sums.advance(&mut self.blocks, scale, mover));
+        self.moved = true;
+    }
+
+    /// Whether to keep the forces of the next evaluation: they help to foresee motion.
+    pub fn wants_forces(&self) -> bool {
+        self.blocks.motion.wants_forces()
+    }
+
+    /// Whether the forces of the last evaluation were to be kept.
+    pub fn knows_forces(&self) -> bool {
+        self.blocks.motion.knows_forces()
+    }
+
+    /// Copies where particles are to `position`, after [`Clusters::advance`], which leaves it to the blocks to know.
+    pub fn fetch_positions(&mut self, position: &mut Vec3s) {
+        if std::mem::take(&mut self.moved) {
+            self.blocks.copy_positions(position.axes_mut().map(|axis| &mut axis[..]));
+        }
     }
 
     fn compute(&mut self, physics: &Physics, grid: Option<&Grid>, energies: bool) -> f32 {

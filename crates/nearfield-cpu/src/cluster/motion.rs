@@ -41,6 +41,8 @@ pub(super) struct Motion {
     intervals: Option<ListIntervals>,
     since_build: u32,
     since_prune: u32,
+    /// Whether the forces of the last evaluation were kept.
+    knows_forces: bool,
 }
 
 /// What is to be done about lists before an evaluation.
@@ -62,6 +64,16 @@ impl Motion {
             Some(lists) if self.since_build + lists.prune_every <= lists.rebuild_every => Due::Pruning,
             Some(_) => Due::Building,
         }
+    }
+
+    /// Whether motion will be foreseen by the forces of the next evaluation: that which budgets are for.
+    pub fn wants_forces(&self) -> bool {
+        self.intervals.is_none()
+    }
+
+    /// Whether the forces of the last evaluation were kept.
+    pub fn knows_forces(&self) -> bool {
+        self.knows_forces
     }
 
     /// The reach of inner lists, where they do not depend on budgets.
@@ -171,6 +183,7 @@ impl Blocks {
 
     /// Pages of blocks, to be given new positions.
     pub fn pages(&mut self) -> impl IndexedParallelIterator<Item = Page<'_>> {
+        self.motion.knows_forces = self.motion.wants_forces();
         self.motion.since_build += 1;
         self.motion.since_prune += 1;
         let Self { first, midway, midway_of_inner, budget, period, position, crossings, crossed, .. } = self;
@@ -317,12 +330,8 @@ impl Page<'_> {
                 moved2[lane] += d * d;
             }
         }
-        let mut over = 0;
-        for lane in 0..BLOCK {
-            over |= u32::from(moved2[lane] >= self.budget[k][lane] * self.budget[k][lane]);
-        }
         // Who crosses a periodic face seems to move far.
-        if over != 0 || self.crossed[k] {
+        if is_over(&moved2, &self.budget[k]) || self.crossed[k] {
             return self.count_crossings(k);
         }
         true
@@ -332,24 +341,22 @@ impl Page<'_> {
     /// their budgets.
     #[cold]
     fn count_crossings(&mut self, k: usize) -> bool {
-        let mut kept = true;
-        for lane in 0..self.particles(k).len() {
-            let mut moved2 = 0.0;
-            for axis in 0..3 {
-                // The nearest image: whoever moves by half the box has outrun the list either way.
-                let period = self.period[axis];
-                let nearest = |d: f32| if period > 0.0 { -(d / period).round() } else { 0.0 };
+        let mut moved2 = [0.0f32; BLOCK];
+        for axis in 0..3 {
+            let period = self.period[axis];
+            // The nearest image: whoever moves by half the box has outrun the list either way.
+            let half = if period > 0.0 { 0.5 * period } else { f32::INFINITY };
+            for lane in 0..BLOCK {
                 let x = self.position[k].0[axis][lane];
-                self.crossings[k].0[axis][lane] = nearest(x - self.midway[k].0[axis][lane]);
+                self.crossings[k].0[axis][lane] = nearest(x - self.midway[k].0[axis][lane], half);
                 let d = x - self.midway_of_inner[k].0[axis][lane];
-                let d = d + nearest(d) * period;
-                moved2 += d * d;
+                let d = d + nearest(d, half) * period;
+                moved2[lane] += d * d;
             }
-            kept &= moved2 < self.budget[k][lane] * self.budget[k][lane];
         }
         // Until the next pruning, though all may have come back.
         self.crossed[k] |= self.crossings[k] != Octet::default();
-        kept
+        !is_over(&moved2, &self.budget[k])
     }
 }
 
@@ -374,6 +381,29 @@ impl lanes::Kernel for Refresh<'_> {
             kept &= page.keeps_to_budget(k);
         }
         kept
+    }
+}
+
+/// Whether some particle has used its budget up, by the squares of displacements, or is not anywhere.
+#[inline(always)]
+fn is_over(moved2: &[f32; BLOCK], budget: &[f32; BLOCK]) -> bool {
+    let mut over = [0; BLOCK];
+    for lane in 0..BLOCK {
+        let keeps = moved2[lane] < budget[lane] * budget[lane];
+        over[lane] = u32::from(!keeps);
+    }
+    over != [0; BLOCK]
+}
+
+/// Periods to be added to a displacement from one side of the box to the other, if it is more than `half` a period.
+#[inline(always)]
+fn nearest(d: f32, half: f32) -> f32 {
+    if d >= half {
+        -1.0
+    } else if d <= -half {
+        1.0
+    } else {
+        0.0
     }
 }
 

@@ -1,23 +1,16 @@
 //! The method `cluster`: a pair list that is kept while its skin lasts, particles in its order.
 
-use super::{
-    evaluate::{Loaded, NonFiniteWatch},
-    integrate::{Integrator, Moving},
-    state::State,
-    tolerance::Tolerance,
-};
+use super::{evaluate::Loaded, state::State, tolerance::Tolerance};
 use crate::{
-    cluster::{BLOCK, Clusters, Counts, Keeping, Mover, Output, has_vector_law},
-    parallel::Scattered,
+    cluster::{Clusters, Counts, Keeping, Output},
     physics::Physics,
 };
 use nearfield_core::{
-    Method, Plan, Quantities, Result,
+    Plan,
     maintenance::Action,
     skin::{ListCosts, ListUse, SkinTuner},
 };
 use std::{
-    ops::Range,
     sync::atomic::{AtomicBool, Ordering::Relaxed},
     time::Instant,
 };
@@ -43,7 +36,7 @@ const COSTS: ListCosts =
 /// The pair list and how it is kept.
 pub(super) struct StoredClusters {
     pub clusters: Clusters,
-    listing: Listing,
+    pub listing: Listing,
     /// What lists may miss.
     tolerance: Option<Tolerance>,
     /// Evaluations since the list was built.
@@ -56,7 +49,7 @@ pub(super) struct StoredClusters {
 
 /// Whether there can be a list; otherwise pairs are found in the grid at each evaluation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Listing {
+pub(super) enum Listing {
     Possible,
     /// The list was larger than the memory budget or than is good: pairs are found anew for each evaluation.
     TooLarge,
@@ -121,13 +114,15 @@ impl Loaded {
         let start = Instant::now();
         let list = stored.listing == Listing::Possible;
         let calm = || stored.tolerance.as_ref().is_none_or(|tolerance| tolerance.allows(state));
-        let moving = state.moving_slices(&results.force, &physics.interaction.types, *dt);
+        let force = stored.clusters.knows_forces().then_some(&results.force);
+        let moving = state.moving_slices(force, &physics.interaction.types, *dt);
         let serves = list && stored.clusters.refresh(moving, calm);
         report.refit_seconds += start.elapsed().as_secs_f64();
         if serves {
             return;
         }
         let start = Instant::now();
+        stored.clusters.fetch_positions(&mut state.position);
         let tolerant = stored.tolerance.as_mut().filter(|_| list);
         let tolerant = tolerant.and_then(|tolerance| tolerance.choose(&stored.clusters, state, skin, *dt, &COSTS));
         if list && tolerant.is_none() {
@@ -149,8 +144,12 @@ impl Loaded {
         if stored.listing != Listing::DifferentRadii {
             let grid = upkeep.index.grid().expect("cluster has a grid");
             state.reorder(grid.order());
-            results.reorder(grid.order());
-            let moving = state.moving_slices(&results.force, &physics.interaction.types, *dt);
+            let knows_forces = stored.clusters.knows_forces();
+            if knows_forces {
+                results.reorder(grid.order());
+            }
+            let force = knows_forces.then_some(&results.force);
+            let moving = state.moving_slices(force, &physics.interaction.types, *dt);
             let budget = plan.memory_budget.min(MOST_BYTES * state.len() as u64);
             let strict = |skin: &SkinTuner| Keeping::Strict { skin: skin.skin() };
             let mut keeping = tolerant.map_or_else(|| strict(skin), Keeping::Tolerant);
@@ -196,189 +195,4 @@ impl Loaded {
         };
         Some(stored.clusters.evaluate(physics, grid, plan.deterministic, out))
     }
-
-    /// Whether steps may be taken by [`Loaded::advance_clusters`].
-    pub fn steps_by_clusters(&self, integrator: &Integrator) -> bool {
-        self.plan.method == Method::Cluster
-            && !self.plan.deterministic
-            && self.clusters.listing == Listing::Possible
-            && has_vector_law(&self.physics)
-            && integrator.has_fast_path()
-    }
-
-    /// Steps in which one pass over the particles, after the pairs, adds their forces up, ends a step and begins the
-    /// next. The arithmetic of a step is that of separate passes.
-    pub fn advance_clusters(
-        &mut self,
-        integrator: &Integrator,
-        from: u64,
-        steps: u64,
-        quantities: Quantities,
-    ) -> Result<()> {
-        self.start(integrator, from + 1)?;
-        for step in from + 1..from + steps {
-            self.prepare(step);
-            if self.clusters.listing == Listing::Possible && !self.sparse.found {
-                self.move_by_clusters(integrator, step)?;
-            } else {
-                self.query(Quantities::FORCES, step)?;
-                self.finish_and_start(integrator, step + 1)?;
-            }
-        }
-        self.evaluate(quantities, from + steps)?;
-        self.finish(integrator);
-        Ok(())
-    }
-
-    fn move_by_clusters(&mut self, integrator: &Integrator, step: u64) -> Result<()> {
-        self.results.prepare(self.state.len(), false);
-        let (forces, positions) = (NonFiniteWatch::default(), NonFiniteWatch::default());
-        let start = Instant::now();
-        let State { position, velocity, image, kind, id, .. } = &mut self.state;
-        let mover = Verlet {
-            integrator,
-            step,
-            position: position.axes_mut().map(|axis| Scattered::new(axis)),
-            velocity: velocity.axes_mut().map(|axis| Scattered::new(axis)),
-            force: self.results.force.axes_mut().map(|axis| Scattered::new(axis)),
-            image: Scattered::new(image),
-            kind,
-            id,
-            forces: &forces,
-            positions: &positions,
-        };
-        self.clusters.clusters.advance(&self.physics, &mover);
-        self.steps += 1;
-        self.account(start.elapsed().as_secs_f64());
-        match forces.first() {
-            Some(particle) => Err(self.diagnose(particle, step)),
-            None => self.check_positions(&positions, step + 1),
-        }
-    }
-}
-
-/// The second half kick of a step, then the first half kick and the drift of the next.
-struct Verlet<'a> {
-    integrator: &'a Integrator,
-    /// The one that ends.
-    step: u64,
-    position: [Scattered<'a, f32>; 3],
-    velocity: [Scattered<'a, f32>; 3],
-    /// Where the next list is pruned it tells how particles will move.
-    force: [Scattered<'a, f32>; 3],
-    image: Scattered<'a, [i32; 3]>,
-    kind: &'a [u32],
-    id: &'a [u32],
-    forces: &'a NonFiniteWatch,
-    positions: &'a NonFiniteWatch,
-}
-
-impl Mover for Verlet<'_> {
-    #[inline(always)]
-    fn advance(&self, particles: Range<usize>, force: &[[f32; BLOCK]; 3], position: &mut [[f32; BLOCK]; 3]) {
-        // SAFETY: no two blocks have a particle in common, and each is moved once.
-        let ([x, y, z], [vx, vy, vz]) = unsafe { (axes(&self.position, &particles), axes(&self.velocity, &particles)) };
-        // SAFETY: as above.
-        for (to, force) in unsafe { axes(&self.force, &particles) }.into_iter().zip(force) {
-            match to.first_chunk_mut() {
-                Some(to) => *to = *force,
-                None => to.copy_from_slice(&force[..to.len()]),
-            }
-        }
-        let kind = self.kind.get(particles.clone()).unwrap_or(&[]);
-        if let (Some(x), Some(y), Some(z)) = (x.first_chunk_mut(), y.first_chunk_mut(), z.first_chunk_mut())
-            && let (Some(vx), Some(vy), Some(vz)) = (vx.first_chunk_mut(), vy.first_chunk_mut(), vz.first_chunk_mut())
-        {
-            let mut next = (*position, [*vx, *vy, *vz]);
-            if self.step(&mut next, force, kind) {
-                *position = next.0;
-                ([*x, *y, *z], [*vx, *vy, *vz]) = next;
-                return;
-            }
-        } else if self.advance_some([x, y, z], [vx, vy, vz], force, kind, position) {
-            return;
-        }
-        self.advance_each(particles, force, position);
-    }
-}
-
-/// Positions and velocities of eight particles.
-type Eight = ([[f32; BLOCK]; 3], [[f32; BLOCK]; 3]);
-
-impl Verlet<'_> {
-    /// Whether all of a block are in the box after they have moved.
-    #[inline(always)]
-    fn step(&self, (position, velocity): &mut Eight, force: &[[f32; BLOCK]; 3], kind: &[u32]) -> bool {
-        let mut inside = true;
-        for (axis, force) in force.iter().enumerate() {
-            inside &= self.integrator.step_many(axis, &mut position[axis], &mut velocity[axis], force, kind);
-        }
-        inside
-    }
-
-    /// The particles of a block that is not full. False, and none has moved, when some would leave the box.
-    #[cold]
-    fn advance_some(
-        &self,
-        x: [&mut [f32]; 3],
-        v: [&mut [f32]; 3],
-        force: &[[f32; BLOCK]; 3],
-        kind: &[u32],
-        position: &mut [[f32; BLOCK]; 3],
-    ) -> bool {
-        let n = x[0].len();
-        let mut next = (*position, [[0.0; BLOCK]; 3]);
-        for axis in 0..3 {
-            // Padding does not leave the box where the first particle does not.
-            next.0[axis][n..].fill(position[axis][0]);
-            next.1[axis][..n].copy_from_slice(v[axis]);
-        }
-        let inside = self.step(&mut next, force, kind);
-        if inside {
-            for (axis, (x, v)) in x.into_iter().zip(v).enumerate() {
-                x.copy_from_slice(&next.0[axis][..n]);
-                v.copy_from_slice(&next.1[axis][..n]);
-                position[axis][..n].copy_from_slice(x);
-            }
-        }
-        inside
-    }
-
-    /// The particles of a block of which some leave the box or are not finite.
-    #[cold]
-    fn advance_each(&self, particles: Range<usize>, force: &[[f32; BLOCK]; 3], position: &mut [[f32; BLOCK]; 3]) {
-        for (lane, i) in particles.enumerate() {
-            // SAFETY: as in `advance`.
-            let at = |of: &[Scattered<'_, f32>; 3]| [0, 1, 2].map(|axis| unsafe { of[axis].range(i..i + 1)[0] });
-            // SAFETY: as in `advance`.
-            let image = unsafe { &mut self.image.range(i..i + 1)[0] };
-            let mut p = Moving { position: at(&self.position), velocity: at(&self.velocity), image: *image };
-            let (force, id) = (force.map(|axis| axis[lane]), self.id[i]);
-            let kind = self.kind.get(i).copied().unwrap_or(0);
-            self.forces.see(force, id);
-            self.integrator.finish(&mut p, force, kind);
-            self.integrator.start(&mut p, force, kind, id, self.step + 1);
-            self.positions.see(p.position, id);
-            *image = p.image;
-            for (axis, (x, v)) in p.position.into_iter().zip(p.velocity).enumerate() {
-                position[axis][lane] = x;
-                // SAFETY: as in `advance`.
-                unsafe {
-                    self.position[axis].write(i, x);
-                    self.velocity[axis].write(i, v);
-                }
-            }
-        }
-    }
-}
-
-/// A range of each array.
-///
-/// # Safety
-/// As for [`Scattered::range`].
-#[inline(always)]
-#[expect(clippy::mut_from_ref, reason = "as for Scattered::range")]
-unsafe fn axes<'a>(of: &'a [Scattered<'_, f32>; 3], range: &Range<usize>) -> [&'a mut [f32]; 3] {
-    // SAFETY: the caller's promise.
-    unsafe { [of[0].range(range.clone()), of[1].range(range.clone()), of[2].range(range.clone())] }
 }

@@ -108,7 +108,7 @@ impl Integrator {
     }
 
     /// Second half kick of a step, then first half kick and drift of the next, of neighbouring particles along one
-    /// axis. Whether all are finite and in the box, and none is so fast that the limit may concern it.
+    /// axis, by their [`Integrator::half_kicks`]. Marks in `leaves` who is not finite or not in the box, or so fast that the limit may concern it.
     #[inline(always)]
     pub fn step_many<const N: usize>(
         &self,
@@ -116,24 +116,31 @@ impl Integrator {
         x: &mut [f32; N],
         v: &mut [f32; N],
         force: &[f32; N],
-        kind: &[u32],
-    ) -> bool {
-        let mut half_kick = [self.half_kick[0]; N];
-        for (half_kick, &kind) in half_kick.iter_mut().zip(kind) {
-            *half_kick = self.half_kick[kind as usize];
-        }
+        half_kick: &[f32; N],
+        leaves: &mut [u32; N],
+    ) {
         let (lo, hi) = (self.sim_box.lo()[axis], self.sim_box.hi()[axis]);
         let slow = self.slow();
-        let mut outside = 0;
         for k in 0..N {
             v[k] += half_kick[k] * force[k];
-            outside |= u32::from(v[k].abs() > slow);
+            leaves[k] |= u32::from(v[k].abs() > slow);
             v[k] += half_kick[k] * force[k];
-            outside |= u32::from(v[k].abs() > slow);
+            leaves[k] |= u32::from(v[k].abs() > slow);
             x[k] += self.dt * v[k];
-            outside |= u32::from(!((x[k] >= lo) & (x[k] < hi)));
+            leaves[k] |= u32::from(!((x[k] >= lo) & (x[k] < hi)));
         }
-        outside == 0
+    }
+
+    /// Half a time step over the masses of particles, by their types; without any there is only one.
+    #[inline(always)]
+    pub fn half_kicks<const N: usize>(&self, kind: &[u32]) -> [f32; N] {
+        let mut half_kick = [self.half_kick[0]; N];
+        if !kind.is_empty() {
+            for (half_kick, &kind) in half_kick.iter_mut().zip(kind) {
+                *half_kick = self.half_kick[kind as usize];
+            }
+        }
+        half_kick
     }
 
     /// Half kick of neighbouring particles.

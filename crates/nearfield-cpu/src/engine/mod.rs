@@ -1,5 +1,6 @@
 //! The engine: a system in memory order, its structure, and the loop of a step.
 
+mod cluster_steps;
 mod clusters;
 mod evaluate;
 mod integrate;

@@ -91,13 +91,13 @@ impl State {
         Input { sim_box: &physics.sim_box, position: [x, y, z], radii, kind: &self.kind }
     }
 
-    /// What cluster pairs need to know of the particles, which move by steps of `dt`, the last `force` on them (empty where
-    /// there is none) among it.
-    pub fn moving_slices<'a>(&'a self, force: &'a Vec3s, types: &'a [ParticleType], dt: f32) -> Moving<'a> {
+    /// What cluster pairs need to know of the particles, which move by steps of `dt`, the last `force` on them, where it
+    /// is known, among it.
+    pub fn moving_slices<'a>(&'a self, force: Option<&'a Vec3s>, types: &'a [ParticleType], dt: f32) -> Moving<'a> {
         Moving {
             position: self.position.axes().map(|axis| &axis[..]),
             velocity: self.velocity.axes().map(|axis| &axis[..]),
-            force: force.axes().map(|axis| &axis[..]),
+            force: force.map_or([&[]; 3], |force| force.axes().map(|axis| &axis[..])),
             kind: &self.kind,
             types,
             dt,
