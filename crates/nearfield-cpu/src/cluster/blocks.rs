@@ -16,6 +16,21 @@ pub(super) const UNMOVED: f32 = 1e18;
 #[repr(C, align(32))]
 pub(super) struct Octet(pub [[f32; BLOCK]; 3]);
 
+/// Where the particles of a block are expected halfway through the life of an inner list, and how far from there each may
+/// be before the list must be pruned.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(super) struct Outlook {
+    pub midway: Octet,
+    pub budget: [f32; BLOCK],
+}
+
+impl Default for Outlook {
+    fn default() -> Self {
+        Self { midway: Octet::default(), budget: [UNMOVED; BLOCK] }
+    }
+}
+
 /// Blocks of eight particles. Those of a pencil are sorted along x, the last block of each pencil is padded.
 #[derive(Default)]
 pub(super) struct Blocks {
@@ -27,8 +42,6 @@ pub(super) struct Blocks {
     pub crossings: Vec<Octet>,
     /// Whether any particle of a block has crossed, or had when the inner list was made.
     pub crossed: Vec<bool>,
-    /// What each particle may move before the inner list must be pruned.
-    pub budget: Vec<[f32; BLOCK]>,
     /// First particle of each block, and a sentinel.
     pub first: Vec<u32>,
     /// Block of each particle.
@@ -38,9 +51,10 @@ pub(super) struct Blocks {
     pub cutoff: f32,
     /// Largest magnitude of a coordinate, images included: what rounding errors scale with.
     pub extent: f32,
-    /// Where particles were expected to be halfway through the life of the outer list, and of the inner one.
+    /// Where particles were expected to be halfway through the life of the outer list.
     pub midway: Vec<Octet>,
-    pub midway_of_inner: Vec<Octet>,
+    /// What is expected of them while the inner list serves.
+    pub outlook: Vec<Outlook>,
     /// Farthest that `midway` is from where a particle was when the outer list was built.
     pub lead: f32,
     pub motion: Motion,
@@ -84,12 +98,10 @@ impl Blocks {
         }
         self.first.push(self.block_of.len() as u32);
         let n = self.first.len() - 1;
-        for vectors in [&mut self.position, &mut self.crossings, &mut self.midway, &mut self.midway_of_inner] {
+        for vectors in [&mut self.position, &mut self.crossings, &mut self.midway] {
             vectors.resize(n, Octet::default());
         }
-        // Padding does not move.
-        self.budget.clear();
-        self.budget.resize(n, [UNMOVED; BLOCK]);
+        self.outlook.resize(n, Outlook::default());
         self.crossed.resize(n, false);
         self.kind.clear();
         if !moving.kind.is_empty() {
@@ -137,8 +149,9 @@ impl Blocks {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let octets = self.position.capacity() + self.crossings.capacity();
-        (octets + self.midway.capacity() + self.midway_of_inner.capacity()) * size_of::<Octet>()
-            + (self.kind.capacity() + self.budget.capacity()) * 4 * BLOCK
+        (octets + self.midway.capacity()) * size_of::<Octet>()
+            + self.outlook.capacity() * size_of::<Outlook>()
+            + self.kind.capacity() * 4 * BLOCK
             + 4 * (self.first.capacity() + self.block_of.capacity())
             + self.crossed.capacity()
     }

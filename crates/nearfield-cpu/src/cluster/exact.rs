@@ -60,7 +60,7 @@ impl lanes::Kernel for Kernel<'_> {
         for segment in &list.segments {
             let cluster = segment.cluster as usize;
             let quad = Quad::new(lanes, blocks, cluster, segment.image);
-            let position = quad::position(lanes, &blocks.position, cluster);
+            let position = quad::position(lanes, &blocks.position[cluster / 2], cluster);
             for (k, &j) in list.blocks[segment.start as usize..segment.end as usize].iter().enumerate() {
                 let j = j as usize;
                 let at = twice(lanes, &blocks.position[j]);

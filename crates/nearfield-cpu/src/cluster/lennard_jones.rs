@@ -216,7 +216,7 @@ impl<P: Law, const ENERGY: bool> lanes::Kernel for Kernel<'_, P, ENERGY> {
             let kinds = if P::TYPED && !view.kind.is_empty() { view.kind[block] } else { [0; BLOCK] };
             let kinds = [kinds[at], kinds[at + 1], kinds[at + 2], kinds[at + 3]];
             // As if somebody else might change it, so that it is read from the cache: registers are for sums.
-            let position = quad::position(lanes, view.position, cluster);
+            let position = quad::position(lanes, &view.position[block], cluster);
             let position = std::hint::black_box(&position);
             // The second cluster of a block has nearly the first one's list, which is in the cache then.
             let ahead = if at == 0 && n > CACHED { AHEAD } else { usize::MAX };

@@ -1,12 +1,13 @@
 //! The lists of cluster pairs: built from the grid, pruned to what the next few evaluations need.
 
 use super::{
-    blocks::{Blocks, Octet, PAGE},
+    blocks::{Blocks, PAGE},
     quad::{self, Position, Quad, VECTORS, displacement, own_pairs, squared_length, twice},
 };
 use crate::{
     Grid, GroupBox, Run,
     lanes::{self, Lanes},
+    list::copy,
 };
 use nearfield_core::predicate::conservative_range;
 use rayon::prelude::*;
@@ -21,6 +22,10 @@ pub(super) const TASKS_PER_THREAD: usize = 4;
 /// Entries of a list that is made for one use: they stay in the cache.
 const BATCH: usize = 8192;
 
+/// Of the skin, by how much less than the cutoff blocks are apart that each inner list has, without a test: nearly all of them
+/// would pass it.
+const STAYING: f32 = 0.2;
+
 /// Fewest blocks worth a task.
 const LEAST_BLOCKS: usize = 16;
 
@@ -34,6 +39,8 @@ pub(super) struct Segment {
     pub own: bool,
     pub start: u32,
     pub end: u32,
+    /// How many blocks, the first ones, are so near that each inner list has them.
+    pub staying: u32,
 }
 
 /// A list of cluster pairs. Segments of a cluster follow each other.
@@ -58,11 +65,29 @@ impl Pairs {
     }
 
     /// Closes a segment of the blocks from `start` to `end`.
-    fn close(&mut self, cluster: u32, image: [i8; 3], start: usize, end: usize) {
+    fn close(&mut self, cluster: u32, image: [i8; 3], start: usize, end: usize, staying: usize) {
         if end > start {
             let own = self.blocks[start] == cluster / 2;
-            self.segments.push(Segment { cluster, image, own, start: start as u32, end: end as u32 });
+            let (start, end, staying) = (start as u32, end as u32, staying as u32);
+            self.segments.push(Segment { cluster, image, own, start, end, staying });
         }
+    }
+
+    /// Appends a segment of what was found.
+    fn push(&mut self, cluster: u32, image: [i8; 3], found: &Found) {
+        let start = self.blocks.len();
+        let (staying, mut others) = (&found.staying[..found.ends[0]], &found.others[..found.ends[1]]);
+        // Its own block comes first, so where others stay it does, too.
+        if let (false, Some((&first, rest))) = (staying.is_empty(), others.split_first())
+            && first == cluster / 2
+        {
+            self.blocks.push(first);
+            others = rest;
+        }
+        self.blocks.extend_from_slice(staying);
+        let n_staying = if staying.is_empty() { 0 } else { self.blocks.len() - start };
+        self.blocks.extend_from_slice(others);
+        self.close(cluster, image, start, self.blocks.len(), n_staying);
     }
 
     /// Puts the segments of `other` after its own.
@@ -74,6 +99,36 @@ impl Pairs {
 
     fn bytes(&self) -> usize {
         self.segments.capacity() * size_of::<Segment>() + 4 * self.blocks.capacity()
+    }
+}
+
+/// Blocks near a cluster: those that stay near it and the others, as far as the two ends.
+#[derive(Default)]
+struct Found {
+    staying: Vec<u32>,
+    others: Vec<u32>,
+    ends: [usize; 2],
+}
+
+impl Found {
+    /// Makes room for up to `most`, none of which is found yet.
+    fn prepare(&mut self, most: usize) {
+        self.ends = [0; 2];
+        for blocks in [&mut self.staying, &mut self.others] {
+            if blocks.len() < most {
+                blocks.resize(most, 0);
+            }
+        }
+    }
+
+    /// Takes block `j` where it is near. It is written and then kept or not: a branch would be foretold wrongly half of the
+    /// time.
+    #[inline(always)]
+    fn take(&mut self, j: u32, stays: bool, near: bool) {
+        self.staying[self.ends[0]] = j;
+        self.ends[0] += usize::from(stays);
+        self.others[self.ends[1]] = j;
+        self.ends[1] += usize::from(near & !stays);
     }
 }
 
@@ -99,6 +154,8 @@ pub(super) struct Task {
     runs: Vec<Run>,
     /// What is near the second cluster of the block at hand.
     second: Pairs,
+    /// What is near the two clusters in the image at hand.
+    found: [Found; 2],
 }
 
 /// The list of all pairs, by task.
@@ -221,14 +278,18 @@ impl lanes::Kernel for Build<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) -> usize {
         let Self { grid, blocks, reach, task, from, enough } = self;
-        let Task { clusters_of, outer, runs, second, .. } = task;
-        let reach2 = lanes.splat(conservative_range(reach, blocks.extent).powi(2));
+        let Task { clusters_of, outer, runs, second, found, .. } = task;
+        let staying = blocks.cutoff - STAYING * (reach - blocks.cutoff);
+        let limits = Limits {
+            reach2: lanes.splat(conservative_range(reach, blocks.extent).powi(2)),
+            staying2: lanes.splat(if staying > 0.0 { staying * staying } else { 0.0 }),
+        };
         let mut b = from;
         while b < clusters_of.end && outer.blocks.len() < enough {
             // Blocks are near by where they are expected, rows by where they are.
             let group = bounds(blocks, b, reach + blocks.lead);
-            let positions =
-                [quad::position(lanes, &blocks.midway, 2 * b), quad::position(lanes, &blocks.midway, 2 * b + 1)];
+            let midway = &blocks.midway[b];
+            let positions = [quad::position(lanes, midway, 2 * b), quad::position(lanes, midway, 2 * b + 1)];
             runs.clear();
             second.clear();
             grid.find_rows(&group, blocks.first[b], runs);
@@ -238,19 +299,19 @@ impl lanes::Kernel for Build<'_> {
                     (Quad::new(lanes, blocks, 2 * b, image), positions[0]),
                     (Quad::new(lanes, blocks, 2 * b + 1, image), positions[1]),
                 ];
-                let starts = [outer.blocks.len(), second.blocks.len()];
+                found
+                    .iter_mut()
+                    .for_each(|found| found.prepare(runs.iter().map(|run| later_blocks(blocks, run, b).len()).sum()));
                 for run in runs {
-                    let first = blocks.block_of[run.start as usize].max(b as u32);
-                    let last = blocks.block_of[run.end as usize - 1];
-                    let near = [&mut outer.blocks, &mut second.blocks];
+                    let run = later_blocks(blocks, run, b);
                     if image == [0; 3] {
-                        find_near::<L, false>(lanes, blocks, &quads, reach2, b as u32, first..last + 1, near);
+                        find_near::<L, false>(lanes, blocks, &quads, &limits, b as u32, run, found);
                     } else {
-                        find_near::<L, true>(lanes, blocks, &quads, reach2, b as u32, first..last + 1, near);
+                        find_near::<L, true>(lanes, blocks, &quads, &limits, b as u32, run, found);
                     }
                 }
-                outer.close(2 * b as u32, image, starts[0], outer.blocks.len());
-                second.close(2 * b as u32 + 1, image, starts[1], second.blocks.len());
+                outer.push(2 * b as u32, image, &found[0]);
+                second.push(2 * b as u32 + 1, image, &found[1]);
             }
             outer.append(second);
             b += 1;
@@ -259,55 +320,52 @@ impl lanes::Kernel for Build<'_> {
     }
 }
 
-/// Appends the blocks of a run that are within reach (squared) of either cluster of block `b`. No particle has crossed a
-/// face yet.
+/// Squares of how far pairs are listed and of how near they are to stay.
+struct Limits<L: Lanes> {
+    reach2: L::F,
+    staying2: L::F,
+}
+
+/// Blocks of a run that are not before block `b`.
+#[inline(always)]
+fn later_blocks(blocks: &Blocks, run: &Run, b: usize) -> Range<u32> {
+    blocks.block_of[run.start as usize].max(b as u32)..blocks.block_of[run.end as usize - 1] + 1
+}
+
+/// Finds the blocks of a run that are near either cluster of block `b`. No particle has crossed a face yet.
 #[inline(always)]
 fn find_near<L: Lanes, const IMAGES: bool>(
     lanes: L,
     blocks: &Blocks,
     quads: &[(Quad<L>, Position<L>); 2],
-    reach2: L::F,
+    limits: &Limits<L>,
     b: u32,
     run: Range<u32>,
-    [first, second]: [&mut Vec<u32>; 2],
+    found: &mut [Found; 2],
 ) {
-    // Each is written and then kept or not: a branch would be foretold wrongly half of the time.
-    let mut ends = [first.len(), second.len()];
-    first.resize(ends[0] + run.len(), 0);
-    second.resize(ends[1] + run.len(), 0);
-    let reach2 = [reach2; VECTORS];
     for j in run {
-        first[ends[0]] = j;
-        second[ends[1]] = j;
         let at = twice(lanes, &blocks.midway[j as usize]);
         for half in 0..2 {
-            let near = if j == b {
+            let [first, second] = squared_lengths::<L, IMAGES>(lanes, blocks, &quads[half], j as usize, at);
+            let (stays, near) = if j == b {
                 let pairs = own_pairs(half);
-                any_within::<L, IMAGES>(lanes, blocks, &blocks.midway, &quads[half], j as usize, reach2, pairs)
+                (
+                    any_within(lanes, [first, second], [limits.staying2; VECTORS], pairs),
+                    any_within(lanes, [first, second], [limits.reach2; VECTORS], pairs),
+                )
             } else {
-                let [first, second] = squared_lengths::<L, IMAGES>(lanes, blocks, &quads[half], j as usize, at);
-                lanes.lt(lanes.min(first, second), reach2[0]) != 0
+                let least = lanes.min(first, second);
+                (lanes.lt(least, limits.staying2) != 0, lanes.lt(least, limits.reach2) != 0)
             };
-            ends[half] += usize::from(near);
+            found[half].take(j, stays, near);
         }
     }
-    first.truncate(ends[0]);
-    second.truncate(ends[1]);
 }
 
-/// Whether any of the `pairs` of a cluster and block `j`, at `position`, is within its reach (squared).
+/// Whether any of the `pairs` of a cluster and a block is within its reach, by squares.
 #[inline(always)]
-fn any_within<L: Lanes, const IMAGES: bool>(
-    lanes: L,
-    blocks: &Blocks,
-    position: &[Octet],
-    of: &(Quad<L>, Position<L>),
-    j: usize,
-    reach2: [L::F; VECTORS],
-    pairs: [u16; VECTORS],
-) -> bool {
-    let [first, second] = squared_lengths::<L, IMAGES>(lanes, blocks, of, j, twice(lanes, &position[j]));
-    (lanes.lt(first, reach2[0]) & pairs[0]) | (lanes.lt(second, reach2[1]) & pairs[1]) != 0
+fn any_within<L: Lanes>(lanes: L, r2: [L::F; VECTORS], reach2: [L::F; VECTORS], pairs: [u16; VECTORS]) -> bool {
+    lanes.lt(r2[0], reach2[0]) & pairs[0] | lanes.lt(r2[1], reach2[1]) & pairs[1] != 0
 }
 
 /// Squared distances of a cluster and the particles of block `j`, which are `at`.
@@ -353,9 +411,8 @@ impl<const BUDGETS: bool> lanes::Kernel for Prune<'_, BUDGETS> {
         let Self { blocks, reach, task } = self;
         // Slices of one length need but one test of an index.
         let n = blocks.len();
-        let midway = &blocks.midway_of_inner[..n];
+        let outlook = &blocks.outlook[..n];
         let crossed = &blocks.crossed[..n];
-        let budget = &blocks.budget[..n];
         let fixed = lanes.splat(conservative_range(reach, blocks.extent).powi(2));
         let Task { outer, inner, .. } = task;
         inner.segments.clear();
@@ -365,28 +422,35 @@ impl<const BUDGETS: bool> lanes::Kernel for Prune<'_, BUDGETS> {
         for segment in &outer.segments {
             let cluster = segment.cluster as usize;
             let (block, at) = (cluster / 2, cluster % 2 * quad::CLUSTER);
-            let quad = (Quad::new(lanes, blocks, cluster, segment.image), quad::position(lanes, midway, cluster));
-            let range = |lane: usize| conservative_range(reach + budget[block][at + lane], blocks.extent);
+            let quad = (
+                Quad::new(lanes, blocks, cluster, segment.image),
+                quad::position(lanes, &outlook[block].midway, cluster),
+            );
+            let range = |lane: usize| conservative_range(reach + outlook[block].budget[at + lane], blocks.extent);
             let ranges = [lanes.halves(range(0), range(1)), lanes.halves(range(2), range(3))];
             let with_images = segment.image != [0; 3] || crossed[block];
             let kept = &mut inner.blocks[..];
-            let mut listed = &outer.blocks[segment.start as usize..segment.end as usize];
+            let listed = &outer.blocks[segment.start as usize..segment.end as usize];
+            let (staying, mut others) = listed.split_at(segment.staying as usize);
             let start = end;
-            if let (true, Some((&own, others))) = (segment.own, listed.split_first()) {
+            copy(staying, &mut kept[end..end + staying.len()]);
+            end += staying.len();
+            if let (true, true, Some((&own, rest))) = (segment.own, staying.is_empty(), others.split_first()) {
                 let mut reach2 = [fixed; VECTORS];
                 if BUDGETS {
-                    let theirs = lanes.twice(&budget[block]);
+                    let theirs = lanes.twice(&outlook[block].budget);
                     let reach = [lanes.add(ranges[0], theirs), lanes.add(ranges[1], theirs)];
                     reach2 = [lanes.mul(reach[0], reach[0]), lanes.mul(reach[1], reach[1])];
                 }
-                let near = any_within::<L, true>(lanes, blocks, midway, &quad, block, reach2, own_pairs(cluster));
+                let at = twice(lanes, &outlook[block].midway);
+                let r2 = squared_lengths::<L, true>(lanes, blocks, &quad, block, at);
                 kept[end] = own;
-                end += usize::from(near);
-                listed = others;
+                end += usize::from(any_within(lanes, r2, reach2, own_pairs(cluster)));
+                others = rest;
             }
-            for &j in listed {
+            for &j in others {
                 let b = j as usize;
-                let at = twice(lanes, &midway[b]);
+                let at = twice(lanes, &outlook[b].midway);
                 let r2 = if with_images || crossed[b] {
                     squared_lengths::<L, true>(lanes, blocks, &quad, b, at)
                 } else {
@@ -394,7 +458,7 @@ impl<const BUDGETS: bool> lanes::Kernel for Prune<'_, BUDGETS> {
                 };
                 // One compare of a vector for the two of a cluster.
                 let near = if BUDGETS {
-                    let theirs = lanes.twice(&budget[b]);
+                    let theirs = lanes.twice(&outlook[b].budget);
                     let reach = [lanes.add(ranges[0], theirs), lanes.add(ranges[1], theirs)];
                     let spare = [lanes.mul_sub(reach[0], reach[0], r2[0]), lanes.mul_sub(reach[1], reach[1], r2[1])];
                     lanes.lt(lanes.splat(0.0), lanes.max(spare[0], spare[1]))
@@ -405,7 +469,7 @@ impl<const BUDGETS: bool> lanes::Kernel for Prune<'_, BUDGETS> {
                 kept[end] = j;
                 end += usize::from(near != 0);
             }
-            inner.close(segment.cluster, segment.image, start, end);
+            inner.close(segment.cluster, segment.image, start, end, end - start);
         }
     }
 }

@@ -8,7 +8,7 @@
 
 use super::{
     BLOCK, Keeping, Moving,
-    blocks::{Blocks, Octet, PAGE, UNMOVED},
+    blocks::{Blocks, Octet, Outlook, PAGE, UNMOVED},
 };
 use crate::lanes;
 use nearfield_core::{predicate::conservative_range, skin::ListIntervals};
@@ -135,26 +135,14 @@ impl Blocks {
             motion.surprise *= lasted.recip().clamp(0.9, 1.2);
         }
         motion.since_prune = 0;
-        let Self { first, position, midway, crossings, period, budget, midway_of_inner, motion, .. } = self;
+        let Self { first, position, midway, crossings, period, outlook, motion, .. } = self;
         let (first, position, midway, crossings) = (&*first, &*position, &*midway, &*crossings);
         let (limit, surprise, period) = (motion.limit, motion.surprise, *period);
-        let pages = budget.par_chunks_mut(PAGE).zip(midway_of_inner.par_chunks_mut(PAGE)).enumerate();
-        let enough = pages.map(|(page, (budget, midway_of_inner))| {
-            let blocks = page * PAGE..page * PAGE + budget.len();
+        let enough = outlook.par_chunks_mut(PAGE).enumerate().map(|(page, outlook)| {
+            let blocks = page * PAGE..page * PAGE + outlook.len();
             let (position, midway) = (&position[blocks.clone()], &midway[blocks.clone()]);
             let (first, crossings) = (&first[blocks.start..=blocks.end], &crossings[blocks]);
-            super::isa().run(Plan {
-                first,
-                moving,
-                position,
-                midway,
-                crossings,
-                period,
-                limit,
-                surprise,
-                budget,
-                midway_of_inner,
-            })
+            super::isa().run(Plan { first, moving, position, midway, crossings, period, limit, surprise, outlook })
         });
         enough.reduce(|| true, |a, b| a & b)
     }
@@ -166,12 +154,12 @@ impl Blocks {
         // Who crosses a face must be seen to be far.
         let quarters = self.period.into_iter().filter(|&period| period > 0.0).map(|period| 0.25 * period);
         let far = quarters.fold((FAR * lists.lead).max(LEAST_FAR * self.cutoff), f32::min);
-        let Self { first, position, budget, midway_of_inner, .. } = self;
+        let Self { first, position, outlook, .. } = self;
         let (first, position) = (&*first, &*position);
-        let blocks = budget.par_iter_mut().zip(midway_of_inner).with_min_len(PAGE).enumerate();
-        blocks.for_each(|(b, (budget, midway))| {
+        outlook.par_iter_mut().with_min_len(PAGE).enumerate().for_each(|(b, Outlook { midway, budget })| {
             let particles = first[b] as usize..first[b + 1] as usize;
             budget[..particles.len()].fill(far);
+            budget[particles.len()..].fill(UNMOVED);
             *midway = position[b];
             for (axis, v) in moving.velocity.iter().enumerate() {
                 for (x, v) in midway.0[axis].iter_mut().zip(&v[particles.clone()]) {
@@ -186,8 +174,8 @@ impl Blocks {
         self.motion.knows_forces = self.motion.wants_forces();
         self.motion.since_build += 1;
         self.motion.since_prune += 1;
-        let Self { first, midway, midway_of_inner, budget, period, position, crossings, crossed, .. } = self;
-        let (first, midway, midway_of_inner, budget) = (&*first, &*midway, &*midway_of_inner, &*budget);
+        let Self { first, midway, outlook, period, position, crossings, crossed, .. } = self;
+        let (first, midway, outlook) = (&*first, &*midway, &*outlook);
         let period = *period;
         let pages = position.par_chunks_mut(PAGE).zip(crossings.par_chunks_mut(PAGE)).zip(crossed.par_chunks_mut(PAGE));
         pages.enumerate().map(move |(page, ((position, crossings), crossed))| {
@@ -196,8 +184,7 @@ impl Blocks {
                 start: blocks.start,
                 first: &first[blocks.start..=blocks.end],
                 midway: &midway[blocks.clone()],
-                midway_of_inner: &midway_of_inner[blocks.clone()],
-                budget: &budget[blocks],
+                outlook: &outlook[blocks],
                 period,
                 position,
                 crossings,
@@ -223,8 +210,7 @@ struct Plan<'a> {
     period: [f32; 3],
     limit: f32,
     surprise: f32,
-    budget: &'a mut [[f32; BLOCK]],
-    midway_of_inner: &'a mut [Octet],
+    outlook: &'a mut [Outlook],
 }
 
 impl lanes::Kernel for Plan<'_> {
@@ -270,7 +256,7 @@ impl lanes::Kernel for Plan<'_> {
                     ahead[lane] += later * later;
                 }
             }
-            let mut expected = [false; BLOCK];
+            let mut foreseen = [false; BLOCK];
             let mut short = 0;
             for lane in 0..BLOCK {
                 // Who is accelerated is farther from its midway in the end than now, by no more than `bend`.
@@ -279,18 +265,18 @@ impl lanes::Kernel for Plan<'_> {
                 let wanted_here = 2.0 * (time * speed[lane].sqrt() + bend) + self.surprise;
                 let (left, left_here) = (self.limit - ahead[lane].sqrt(), self.limit - gone[lane].sqrt());
                 // Who is near its limit is not expected ahead: whoever is may have nothing left where it is.
-                expected[lane] = left >= wanted;
+                foreseen[lane] = left >= wanted;
                 let here = if wanted_here < left_here { wanted_here } else { left_here };
                 let here = if here > 0.0 { here } else { 0.0 };
-                let budget = if expected[lane] { wanted } else { here };
-                self.budget[k][lane] = if lane < n { budget } else { UNMOVED };
-                let lacks = !expected[lane] & (left_here < LEAST_BUDGET * wanted_here) & (lane < n);
+                let budget = if foreseen[lane] { wanted } else { here };
+                self.outlook[k].budget[lane] = if lane < n { budget } else { UNMOVED };
+                let lacks = !foreseen[lane] & (left_here < LEAST_BUDGET * wanted_here) & (lane < n);
                 short |= u32::from(lacks);
             }
             for axis in 0..3 {
                 for lane in 0..BLOCK {
                     let x = self.position[k].0[axis][lane];
-                    self.midway_of_inner[k].0[axis][lane] = if expected[lane] { x + going[axis][lane] } else { x };
+                    self.outlook[k].midway.0[axis][lane] = if foreseen[lane] { x + going[axis][lane] } else { x };
                 }
             }
             enough &= short == 0;
@@ -305,8 +291,7 @@ pub(super) struct Page<'a> {
     pub start: usize,
     first: &'a [u32],
     midway: &'a [Octet],
-    midway_of_inner: &'a [Octet],
-    budget: &'a [[f32; BLOCK]],
+    outlook: &'a [Outlook],
     period: [f32; 3],
     pub position: &'a mut [Octet],
     crossings: &'a mut [Octet],
@@ -326,12 +311,12 @@ impl Page<'_> {
         let mut moved2 = [0.0f32; BLOCK];
         for axis in 0..3 {
             for lane in 0..BLOCK {
-                let d = self.position[k].0[axis][lane] - self.midway_of_inner[k].0[axis][lane];
+                let d = self.position[k].0[axis][lane] - self.outlook[k].midway.0[axis][lane];
                 moved2[lane] += d * d;
             }
         }
         // Who crosses a periodic face seems to move far.
-        if is_over(&moved2, &self.budget[k]) || self.crossed[k] {
+        if is_over(&moved2, &self.outlook[k].budget) || self.crossed[k] {
             return self.count_crossings(k);
         }
         true
@@ -349,14 +334,14 @@ impl Page<'_> {
             for lane in 0..BLOCK {
                 let x = self.position[k].0[axis][lane];
                 self.crossings[k].0[axis][lane] = nearest(x - self.midway[k].0[axis][lane], half);
-                let d = x - self.midway_of_inner[k].0[axis][lane];
+                let d = x - self.outlook[k].midway.0[axis][lane];
                 let d = d + nearest(d, half) * period;
                 moved2[lane] += d * d;
             }
         }
         // Until the next pruning, though all may have come back.
         self.crossed[k] |= self.crossings[k] != Octet::default();
-        !is_over(&moved2, &self.budget[k])
+        !is_over(&moved2, &self.outlook[k].budget)
     }
 }
 

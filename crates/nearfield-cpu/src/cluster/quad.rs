@@ -78,10 +78,10 @@ impl<L: Lanes> Quad<L> {
     }
 }
 
-/// Where the particles of cluster `cluster` are, of blocks at `position`.
+/// Where the particles of cluster `cluster` are, of its block at `position`.
 #[inline(always)]
-pub(super) fn position<L: Lanes>(lanes: L, position: &[Octet], cluster: usize) -> Position<L> {
-    quarters(lanes, &position[cluster / 2], cluster % 2 * CLUSTER)
+pub(super) fn position<L: Lanes>(lanes: L, position: &Octet, cluster: usize) -> Position<L> {
+    quarters(lanes, position, cluster % 2 * CLUSTER)
 }
 
 // No closures below or in kernels: they would be compiled without the instruction set.

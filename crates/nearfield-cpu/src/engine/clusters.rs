@@ -25,7 +25,7 @@ const MOST_BYTES: u64 = 1024;
 /// particles decays in the longer time that it serves.
 const SORTING: f64 = 140.0;
 const LISTING: f64 = 9.0;
-const PRUNING: f64 = 4.6;
+const PRUNING: f64 = 3.3;
 const STEPPING: f64 = 1.2;
 
 /// The same for lists that serve for a number of steps; computing the pairs of an inner list costs the kernel's 45 ns over

@@ -2,7 +2,7 @@
 
 /// Copies a row. Rows are short, so that a call of the C library would take longer than the copy.
 #[inline(always)]
-pub(super) fn copy(from: &[u32], to: &mut [u32]) {
+pub(crate) fn copy(from: &[u32], to: &mut [u32]) {
     match from.len() {
         0..4 => to.iter_mut().zip(from).for_each(|(to, from)| *to = *from),
         4..8 => copy_by::<4>(from, to),

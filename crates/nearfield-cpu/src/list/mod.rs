@@ -8,6 +8,7 @@ mod rows;
 mod rule;
 mod scan;
 
+pub(crate) use copy::copy;
 pub(crate) use csr::empty as empty_list;
 pub use csr::{ListBuilder, neighbor_list};
 pub(crate) use rows::Queries;
