@@ -103,6 +103,39 @@ fn a_run_of_clusters_continues_bit_for_bit_from_its_memory_order() {
     }
 }
 
+/// In one go, particles move in their blocks, each step by one pass; one at a time, by passes of their own, from where they
+/// are copied to.
+#[test]
+fn steps_of_clusters_in_one_go_are_those_taken_one_at_a_time_bit_for_bit() {
+    for boundary in [Boundary::Periodic, Boundary::Wall, Boundary::Open] {
+        for list_tolerance in [0.0, 1e-3] {
+            let mut system = jittered(7, 1.1, boundary);
+            (0..7).for_each(|i| system.particles.velocity.set(50 * i, [9.0, -8.0, 7.0]));
+            let plan = Plan { skin: Skin::Fixed(0.4), list_tolerance, ..Plan::new(Method::Cluster) };
+            let [mut whole, mut pieces] = [(); 2].map(|()| {
+                let mut engine = CpuEngine::new();
+                engine.load(&system, &plan).unwrap();
+                engine
+            });
+            let dynamics = Dynamics::nve(0.004);
+            let (mut expected, mut found) = (Particles::default(), Particles::default());
+            for piece in 0..3 {
+                whole.advance(&dynamics, 40 * piece, 40, Quantities::FORCES).unwrap();
+                for step in 40 * piece..40 * piece + 40 {
+                    pieces.advance(&dynamics, step, 1, Quantities::FORCES).unwrap();
+                    pieces.snapshot(&mut found).unwrap();
+                }
+                whole.snapshot(&mut expected).unwrap();
+                assert!(found == expected, "{boundary:?} {list_tolerance} {piece}");
+            }
+            assert!(whole.report().list_builds > 3, "{:?}", whole.report());
+            assert_eq!(whole.report().list_builds, pieces.report().list_builds);
+            let crossed = expected.image.iter().any(|&image| image != [0; 3]);
+            assert_eq!(crossed, boundary == Boundary::Periodic, "{boundary:?}");
+        }
+    }
+}
+
 /// Particles anywhere, fast enough to meet many others in some hundred steps.
 fn gas(n: usize, length: f32, boundary: Boundary) -> System {
     let mut system = jittered(1, length, boundary);
