@@ -28,6 +28,7 @@ mod exact;
 mod lennard_jones;
 mod list;
 mod motion;
+mod prune;
 mod quad;
 mod sums;
 #[cfg(test)]
