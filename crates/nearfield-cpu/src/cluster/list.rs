@@ -299,9 +299,8 @@ impl lanes::Kernel for Build<'_> {
                     (Quad::new(lanes, blocks, 2 * b, image), positions[0]),
                     (Quad::new(lanes, blocks, 2 * b + 1, image), positions[1]),
                 ];
-                found
-                    .iter_mut()
-                    .for_each(|found| found.prepare(runs.iter().map(|run| later_blocks(blocks, run, b).len()).sum()));
+                let most = runs.iter().map(|run| later_blocks(blocks, run, b).len()).sum();
+                found.iter_mut().for_each(|found| found.prepare(most));
                 for run in runs {
                     let run = later_blocks(blocks, run, b);
                     if image == [0; 3] {

@@ -10,7 +10,8 @@
 //! the skin from where it was expected ([`motion`]). The *inner* list is the part of it that is near enough for the
 //! next few evaluations: each particle has a budget of displacement ([`Blocks::plan_motion`]), two particles are kept
 //! while their distance exceeds the cutoff by less than both budgets, and the list is pruned anew when some particle
-//! has used its budget up. Displacements are measured before each use, so no pair is missed.
+//! has used its budget up. Displacements are measured before each use, so no pair is missed. Blocks so near that nearly all
+//! would be kept are kept without a test ([`list::Segment`]).
 //!
 //! Or both lists serve for a number of steps ([`Keeping::Tolerant`]), chosen so that what pairs they miss does no more than
 //! a tolerance allows ([`nearfield_core::skin::Missed`]).
@@ -19,7 +20,7 @@
 //! computed while they are in the cache ([`Clusters::build_without_list`]).
 //!
 //! Which pairs interact, the predicate decides for each evaluation, from wrapped positions: particles that crossed a
-//! periodic face since the list was built have it counted in the image ([`Quad`]).
+//! periodic face since the list was built have it counted in the image ([`quad::Quad`]).
 
 #![expect(clippy::needless_range_loop, reason = "several arrays at one lane or axis, and no closures in kernels")]
 

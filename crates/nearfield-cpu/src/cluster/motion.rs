@@ -66,7 +66,7 @@ impl Motion {
         }
     }
 
-    /// Whether motion will be foreseen by the forces of the next evaluation: that which budgets are for.
+    /// Whether the forces of the next evaluation are to be kept: budgets go by them, numbers of steps do not.
     pub fn wants_forces(&self) -> bool {
         self.intervals.is_none()
     }

@@ -67,7 +67,7 @@ impl Integrator {
         }
     }
 
-    /// Whether [`Integrator::start_many`] and [`Integrator::finish_many`] do what [`Integrator::start`] and
+    /// Whether [`Integrator::start_many`] and [`Integrator::kick_many`] do what [`Integrator::start`] and
     /// [`Integrator::finish`] do, bit for bit.
     pub fn has_fast_path(&self) -> bool {
         self.langevin.is_none()
@@ -108,7 +108,8 @@ impl Integrator {
     }
 
     /// Second half kick of a step, then first half kick and drift of the next, of neighbouring particles along one
-    /// axis, by their [`Integrator::half_kicks`]. Marks in `leaves` who is not finite or not in the box, or so fast that the limit may concern it.
+    /// axis, by their [`Integrator::half_kicks`]. Marks in `leaves` who is not finite or not in the box, or so fast that
+    /// the limit may concern it.
     #[inline(always)]
     pub fn step_many<const N: usize>(
         &self,
