@@ -38,7 +38,10 @@ coulombtype = Cut-off
 rcoulomb = {cutoff}
 rvdw = {cutoff}
 vdw-modifier = Potential-shift
-tcoupl = no
+tcoupl = v-rescale
+tc-grps = System
+tau-t = 1000
+ref-t = {melted}
 gen-vel = yes
 gen-temp = {temperature}
 gen-seed = 1
@@ -63,7 +66,8 @@ def run(m, steps, threads, tolerance, integrator):
         (path / "start.gro").write_text("\n".join(["melt", str(n), *rows, box, ""]))
         (path / "melt.top").write_text(TOPOLOGY.format(mass=MASS, sigma=SIGMA, epsilon=EPSILON, n=n))
         settings = PARAMETERS.format(
-            dt=0.005 * TIME, steps=steps, cutoff=2.5 * SIGMA, temperature=1.44 * KELVIN, tolerance=tolerance
+            dt=0.005 * TIME, steps=steps, cutoff=2.5 * SIGMA, temperature=1.44 * KELVIN,
+            melted=0.72 * KELVIN, tolerance=tolerance
         )
         (path / "melt.mdp").write_text(settings.replace("md-vv", integrator))
         quiet = {"cwd": path, "check": True, "capture_output": True, "text": True}
