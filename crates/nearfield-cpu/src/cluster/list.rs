@@ -1,6 +1,7 @@
 //! The lists of cluster pairs, built from the grid.
 
 use super::{
+    balance::{self, Piece},
     blocks::{Blocks, PAGE},
     prune::Prune,
     quad::{self, Position, Quad, VECTORS, displacement, own_pairs, squared_length, twice},
@@ -25,6 +26,9 @@ const BATCH: usize = 8192;
 /// By what part of the skin blocks are nearer than the cutoff that each inner list has without a test, which nearly all of
 /// them would pass.
 const STAYING: f32 = 0.2;
+
+/// Pairs of clusters and blocks that take as long as what there is to do for each block, besides.
+const WORK_OF_BLOCK: f64 = 4.0;
 
 /// Fewest blocks worth a task.
 const LEAST_BLOCKS: usize = 16;
@@ -165,20 +169,25 @@ pub(super) struct PairList {
 }
 
 impl PairList {
-    /// Divides the blocks among `per_thread` tasks for each thread.
-    pub fn divide(&mut self, blocks: &Blocks, per_thread: usize) {
+    /// Divides the blocks among `per_thread` tasks for each thread, evenly or by the pairs that they had in the `last` list:
+    /// those of the first blocks are more, for pairs through periodic faces are theirs, and those of the last are fewer.
+    pub fn divide(&mut self, blocks: &Blocks, per_thread: usize, last: bool) {
         let n = blocks.len();
         let n_tasks = (per_thread * rayon::current_num_threads()).min(n.div_ceil(LEAST_BLOCKS)).max(1);
+        let pieces: Vec<_> = self.tasks.iter().filter(|_| last).map(Task::piece).collect();
+        let ends = balance::ends(&pieces, n, n_tasks);
         self.tasks.resize_with(n_tasks, Task::default);
-        for (t, task) in self.tasks.iter_mut().enumerate() {
-            task.clusters_of = n * t / n_tasks..n * (t + 1) / n_tasks;
+        let mut start = 0;
+        for (task, end) in self.tasks.iter_mut().zip(ends) {
+            task.clusters_of = start..end;
+            start = end;
         }
     }
 
     /// Lists all pairs of clusters and blocks with particles within `reach`; false when that takes more than `budget`
     /// bytes.
     pub fn build(&mut self, grid: &Grid, blocks: &Blocks, reach: f32, budget: u64) -> bool {
-        self.divide(blocks, TASKS_PER_THREAD);
+        self.divide(blocks, TASKS_PER_THREAD, true);
         let bytes = AtomicU64::new(0);
         self.tasks.par_iter_mut().with_max_len(1).for_each(|task| {
             let (mut from, mut counted) = (task.clusters_of.start, 0);
@@ -227,6 +236,12 @@ impl PairList {
 }
 
 impl Task {
+    /// Its blocks and the work that they are, in pairs of clusters and blocks.
+    fn piece(&self) -> Piece {
+        let blocks = self.clusters_of.len();
+        Piece { blocks, work: self.outer.blocks.len() as f64 + WORK_OF_BLOCK * blocks as f64 }
+    }
+
     /// Lists the pairs within the cutoff of some blocks after the others, each time in the place of those before.
     pub fn for_each_batch(&mut self, grid: &Grid, blocks: &Blocks, mut with: impl FnMut(&Pairs)) {
         let mut from = self.clusters_of.start;

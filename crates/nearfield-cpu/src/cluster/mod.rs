@@ -24,6 +24,7 @@
 
 #![expect(clippy::needless_range_loop, reason = "several arrays at one lane or axis, and no closures in kernels")]
 
+mod balance;
 mod blocks;
 mod exact;
 mod lennard_jones;
@@ -186,7 +187,7 @@ impl Clusters {
     pub fn build_without_list(&mut self, grid: &Grid, physics: &Physics, moving: Moving) {
         self.valid = false;
         self.blocks.fill(grid, physics, moving, Keeping::ONCE);
-        self.list.divide(&self.blocks, 2 * TASKS_PER_THREAD);
+        self.list.divide(&self.blocks, 2 * TASKS_PER_THREAD, false);
         self.sums.lay_out(&mut self.list, &self.blocks, Reach::Grid(grid));
     }
 
