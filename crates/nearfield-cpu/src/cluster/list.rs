@@ -27,7 +27,8 @@ const BATCH: usize = 8192;
 /// them would pass.
 const STAYING: f32 = 0.2;
 
-/// Pairs of clusters and blocks that take as long as what there is to do for each block, besides.
+/// Pairs of clusters and blocks that take as long as what else there is to do for each block: setting up and folding its
+/// clusters, 4.7 ns a particle where a pair takes 9 to 12.
 const WORK_OF_BLOCK: f64 = 4.0;
 
 /// Fewest blocks worth a task.
