@@ -170,13 +170,12 @@ pub(super) struct PairList {
 }
 
 impl PairList {
-    /// Divides the blocks among `per_thread` tasks for each thread, evenly or by the pairs that they had in the `last` list:
-    /// those of the first blocks are more, for pairs through periodic faces are theirs, and those of the last are fewer.
-    pub fn divide(&mut self, blocks: &Blocks, per_thread: usize, last: bool) {
+    /// Divides the blocks among `per_thread` tasks for each thread, so that all are the same work if that is distributed as
+    /// in some `pieces`.
+    pub fn divide(&mut self, blocks: &Blocks, per_thread: usize, pieces: &[Piece]) {
         let n = blocks.len();
         let n_tasks = (per_thread * rayon::current_num_threads()).min(n.div_ceil(LEAST_BLOCKS)).max(1);
-        let pieces: Vec<_> = self.tasks.iter().filter(|_| last).map(Task::piece).collect();
-        let ends = balance::ends(&pieces, n, n_tasks);
+        let ends = balance::ends(pieces, n, n_tasks);
         self.tasks.resize_with(n_tasks, Task::default);
         let mut start = 0;
         for (task, end) in self.tasks.iter_mut().zip(ends) {
@@ -188,7 +187,10 @@ impl PairList {
     /// Lists all pairs of clusters and blocks with particles within `reach`; false when that takes more than `budget`
     /// bytes.
     pub fn build(&mut self, grid: &Grid, blocks: &Blocks, reach: f32, budget: u64) -> bool {
-        self.divide(blocks, TASKS_PER_THREAD, true);
+        // As in the last list. Evenly is not enough: pairs through periodic faces are those of the first blocks, and the last
+        // ones have few after them.
+        let pieces: Vec<_> = self.tasks.iter().map(Task::piece).collect();
+        self.divide(blocks, TASKS_PER_THREAD, &pieces);
         let bytes = AtomicU64::new(0);
         self.tasks.par_iter_mut().with_max_len(1).for_each(|task| {
             let (mut from, mut counted) = (task.clusters_of.start, 0);

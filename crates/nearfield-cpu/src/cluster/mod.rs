@@ -187,7 +187,7 @@ impl Clusters {
     pub fn build_without_list(&mut self, grid: &Grid, physics: &Physics, moving: Moving) {
         self.valid = false;
         self.blocks.fill(grid, physics, moving, Keeping::ONCE);
-        self.list.divide(&self.blocks, 2 * TASKS_PER_THREAD, false);
+        self.list.divide(&self.blocks, 2 * TASKS_PER_THREAD, &[]);
         self.sums.lay_out(&mut self.list, &self.blocks, Reach::Grid(grid));
     }
 

@@ -1,6 +1,7 @@
 //! Inner lists: what the next few evaluations need of the outer ones.
 
 use super::{
+    BLOCK,
     blocks::Blocks,
     list::{Task, any_within, squared_lengths},
     quad::{self, Quad, VECTORS, own_pairs, twice},
@@ -53,8 +54,7 @@ impl<const BUDGETS: bool> lanes::Kernel for Prune<'_, BUDGETS> {
             if let (true, true, Some((&own, rest))) = (segment.own, staying.is_empty(), others.split_first()) {
                 let mut reach2 = [fixed; VECTORS];
                 if BUDGETS {
-                    let theirs = lanes.twice(&outlook[block].budget);
-                    let reach = [lanes.add(ranges[0], theirs), lanes.add(ranges[1], theirs)];
+                    let reach = reach_of_pairs(lanes, ranges, &outlook[block].budget);
                     reach2 = [lanes.mul(reach[0], reach[0]), lanes.mul(reach[1], reach[1])];
                 }
                 let at = twice(lanes, &outlook[block].midway);
@@ -73,8 +73,7 @@ impl<const BUDGETS: bool> lanes::Kernel for Prune<'_, BUDGETS> {
                 };
                 // One compare of a vector for the two of a cluster.
                 let near = if BUDGETS {
-                    let theirs = lanes.twice(&outlook[b].budget);
-                    let reach = [lanes.add(ranges[0], theirs), lanes.add(ranges[1], theirs)];
+                    let reach = reach_of_pairs(lanes, ranges, &outlook[b].budget);
                     let spare = [lanes.mul_sub(reach[0], reach[0], r2[0]), lanes.mul_sub(reach[1], reach[1], r2[1])];
                     lanes.lt(lanes.splat(0.0), lanes.max(spare[0], spare[1]))
                 } else {
@@ -87,4 +86,11 @@ impl<const BUDGETS: bool> lanes::Kernel for Prune<'_, BUDGETS> {
             inner.close(segment.cluster, segment.image, start, end, end - start);
         }
     }
+}
+
+/// How far the particles of a cluster, of `ranges`, and those of a block with their budgets reach together.
+#[inline(always)]
+fn reach_of_pairs<L: Lanes>(lanes: L, ranges: [L::F; VECTORS], budget: &[f32; BLOCK]) -> [L::F; VECTORS] {
+    let theirs = lanes.twice(budget);
+    [lanes.add(ranges[0], theirs), lanes.add(ranges[1], theirs)]
 }
