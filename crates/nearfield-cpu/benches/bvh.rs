@@ -5,7 +5,7 @@
 //! cube of 1000 (paper A). A count query tests every proposed slot against each query point of the group.
 
 use nearfield_core::{Boundary, Images, SimBox};
-use nearfield_cpu::{Bvh, GroupBox, Input, InputRadii, LANES, Run, Structure};
+use nearfield_cpu::{Bvh, GroupBox, Input, InputRadii, LANES, Run, Structure, Vicinity};
 use pulp::{Arch, Simd, WithSimd};
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, LogNormal};
@@ -87,7 +87,7 @@ impl WithSimd for CountGroup<'_> {
         let queries = queries.start..queries.end.min(scene.position[0].len());
         let group = GroupBox::around(slots, queries.clone(), scene.cutoff).expect("groups hold particles");
         runs.clear();
-        bvh.runs(&group, runs);
+        bvh.runs(&group, &mut Vicinity::default(), runs);
         let (mut found, mut tested) = ([0u32; LANES], 0);
         for run in runs.iter() {
             let shift = scene.sim_box.shift(run.image);

@@ -5,7 +5,7 @@
 //! share of useful lanes when runs are read sixteen at a time, "bytes" those of the grid for each particle.
 
 use nearfield_core::{Boundary, ListKind, ListRequest, NeighborList, SimBox};
-use nearfield_cpu::{Grid, GroupBox, Input, InputRadii, LANES, ListBuilder, Structure, count_neighbors};
+use nearfield_cpu::{Grid, GroupBox, Input, InputRadii, LANES, ListBuilder, Structure, Vicinity, count_neighbors};
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, LogNormal, Normal};
 use rand_pcg::Pcg64Mcg;
@@ -191,12 +191,12 @@ fn proposals(grid: &Grid, input: &Input) -> String {
         InputRadii::PerParticle(_) => 0.0,
     };
     let (mut candidates, mut lanes, mut n_runs) = (0, 0, 0);
-    let mut runs = Vec::new();
+    let (mut vicinity, mut runs) = (Vicinity::default(), Vec::new());
     for g in 0..grid.n_groups() {
         let group = grid.group(g);
         let bounds = GroupBox::around(grid.slots(), group.clone(), uniform).expect("groups are not empty");
         runs.clear();
-        grid.runs(&bounds, &mut runs);
+        grid.runs(&bounds, &mut vicinity, &mut runs);
         n_runs += runs.len();
         for run in &runs {
             let n = (run.end - run.start) as usize;

@@ -1,6 +1,6 @@
 //! No structure: every slot is a candidate of every query, in every image.
 
-use crate::{GroupBox, Input, LANES, Run, Slots, Structure};
+use crate::{GroupBox, Input, LANES, Run, Slots, Structure, Vicinity};
 use std::ops::Range;
 
 /// All pairs. Slots are in input order.
@@ -41,7 +41,7 @@ impl Structure for Brute {
         g * LANES..((g + 1) * LANES).min(self.slots.len())
     }
 
-    fn runs(&self, _: &GroupBox, out: &mut Vec<Run>) {
+    fn runs(&self, _: &GroupBox, _: &mut Vicinity, out: &mut Vec<Run>) {
         let end = self.slots.len() as u32;
         if end > 0 {
             out.extend(self.images.iter().map(|&image| Run { start: 0, end, image }));

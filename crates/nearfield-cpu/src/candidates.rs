@@ -97,14 +97,31 @@ impl Candidates {
         with_radii: bool,
         with_kinds: bool,
     ) {
-        let (slots, sim_box) = structure;
+        match (with_radii, with_kinds) {
+            (false, false) => self.gather_as::<L, false, false>(lanes, structure, group, runs),
+            (false, true) => self.gather_as::<L, false, true>(lanes, structure, group, runs),
+            (true, false) => self.gather_as::<L, true, false>(lanes, structure, group, runs),
+            (true, true) => self.gather_as::<L, true, true>(lanes, structure, group, runs),
+        }
+    }
+
+    #[inline(always)]
+    fn gather_as<L: Lanes, const RADII: bool, const KINDS: bool>(
+        &mut self,
+        lanes: L,
+        (slots, sim_box): (&Slots, &SimBox),
+        group: &GroupBox,
+        runs: &[Run],
+    ) {
         self.make_room(runs.iter().map(|run| (run.end - run.start) as usize + LANES).sum::<usize>() + LANES);
         let slack = slack(sim_box, group);
         self.segments.clear();
-        // Slices of their own, so that a store to one does not make the others be looked up again.
-        let (to_x, to_y, to_z) = (&mut self.x[..], &mut self.y[..], &mut self.z[..]);
-        let (to_radius, to_particle) = (&mut self.radius[..], &mut self.particle[..]);
-        let to_kind = &mut self.kind[..];
+        // Slices of their own, so that a store to one does not make the others be looked up again, and of one length, so
+        // that one test of a place does for all.
+        let room = self.x.len();
+        let (to_x, to_y, to_z) = (&mut self.x[..room], &mut self.y[..room], &mut self.z[..room]);
+        let (to_particle, to_radius) = (&mut self.particle[..room], &mut self.radius[..room]);
+        let to_kind = &mut self.kind[..room];
         let (mut at, mut start) = (0, 0);
         let mut reach = Reach::new(lanes, group, [0.0; 3], slack);
         for (k, run) in runs.iter().enumerate() {
@@ -117,14 +134,14 @@ impl Candidates {
             let y = slots.y[slice.clone()].as_chunks::<LANES>().0;
             let z = slots.z[slice.clone()].as_chunks::<LANES>().0;
             let particle = slots.particle[slice.clone()].as_chunks::<LANES>().0;
-            let radii = if with_radii { slots.radius[slice.clone()].as_chunks::<LANES>().0 } else { &[] };
-            let kinds = if with_kinds { slots.kind[slice].as_chunks::<LANES>().0 } else { &[] };
+            let radii = if RADII { slots.radius[slice.clone()].as_chunks::<LANES>().0 } else { &[] };
+            let kinds = if KINDS { slots.kind[slice].as_chunks::<LANES>().0 } else { &[] };
             let mut left = n;
             for (c, (((x, y), z), particle)) in x.iter().zip(y).zip(z).zip(particle).enumerate() {
                 let in_run = if left < LANES { (1u16 << left) - 1 } else { u16::MAX };
                 left = left.saturating_sub(LANES);
                 let (x, y, z) = (lanes.load(x), lanes.load(y), lanes.load(z));
-                let radius = if with_radii { Some(lanes.load(&radii[c])) } else { None };
+                let radius = if RADII { Some(lanes.load(&radii[c])) } else { None };
                 let mask = reach.holds(lanes, [x, y, z], radius) & in_run;
                 lanes.compress(mask, x, chunk_mut(to_x, at));
                 lanes.compress(mask, y, chunk_mut(to_y, at));
@@ -133,7 +150,7 @@ impl Candidates {
                 if let Some(radius) = radius {
                     lanes.compress(mask, radius, chunk_mut(to_radius, at));
                 }
-                if with_kinds {
+                if KINDS {
                     lanes.compress_u(mask, lanes.load_u(&kinds[c]), chunk_mut(to_kind, at));
                 }
                 at += mask.count_ones() as usize;

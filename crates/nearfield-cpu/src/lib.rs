@@ -27,7 +27,7 @@ mod testing;
 pub use brute::Brute;
 pub use bvh::{Bvh, Probe, Ray, Refit};
 pub use engine::CpuEngine;
-pub use grid::Grid;
+pub use grid::{Grid, Vicinity};
 pub use list::{ListBuilder, Row, Rows, neighbor_list};
 pub use search::{Counts, Pair, bipartite_list, count_neighbors, for_each_pair};
 pub use slots::{Input, InputRadii, LANES, Slots};

@@ -1,6 +1,6 @@
 //! What every search structure does: turn a group of queries into runs of candidates.
 
-use crate::Slots;
+use crate::{Slots, Vicinity};
 use std::ops::Range;
 
 /// Consecutive slots that may hold neighbours, seen in a periodic image:
@@ -31,27 +31,27 @@ impl GroupBox {
     /// radius where slots carry none.
     #[inline]
     pub fn around(slots: &Slots, group: Range<usize>, uniform: f32) -> Option<Self> {
-        let mut bounds = Self { lo: [f32::INFINITY; 3], hi: [f32::NEG_INFINITY; 3], radius: 0.0 };
-        for slot in group.clone() {
+        let (mut lo, mut hi) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+        let [x, y, z] = [&slots.x, &slots.y, &slots.z].map(|axis| &axis[group.clone()]);
+        let particles = &slots.particle[group.clone()];
+        for (((x, y), z), &particle) in x.iter().zip(y).zip(z).zip(particles) {
             // Padding is far away: with it, the last group would be proposed everything.
-            if slots.particle[slot] == u32::MAX {
+            if particle == u32::MAX {
                 continue;
             }
-            for (axis, x) in slots.at(slot).into_iter().enumerate() {
-                bounds.lo[axis] = bounds.lo[axis].min(x);
-                bounds.hi[axis] = bounds.hi[axis].max(x);
+            for (axis, x) in [*x, *y, *z].into_iter().enumerate() {
+                // Not `min` and `max`, whose treatment of NaN takes twice as long.
+                lo[axis] = if x < lo[axis] { x } else { lo[axis] };
+                hi[axis] = if x > hi[axis] { x } else { hi[axis] };
             }
         }
-        if bounds.lo[0] > bounds.hi[0] {
-            return None;
-        }
-        bounds.radius = match slots.radius.get(group.clone()) {
-            Some(radii) => radii.iter().zip(&slots.particle[group]).fold(0.0, |largest, (&radius, &particle)| {
+        let radius = match slots.radius.get(group) {
+            Some(radii) => radii.iter().zip(particles).fold(0.0f32, |largest, (&radius, &particle)| {
                 if particle == u32::MAX { largest } else { largest.max(radius) }
             }),
             None => uniform,
         };
-        Some(bounds)
+        (lo[0] <= hi[0]).then_some(Self { lo, hi, radius })
     }
 }
 
@@ -71,8 +71,8 @@ pub trait Structure: Sync {
 
     /// Appends runs that together hold, for every query point in `group`, every slot within range of it, in the image
     /// it is within range at. A slot-image pair appears in at most one run; candidates out of range are allowed.
-    /// `out` is cleared by the caller.
-    fn runs(&self, group: &GroupBox, out: &mut Vec<Run>);
+    /// `out` is cleared by the caller, who hands the same `vicinity` in for one group after the other.
+    fn runs(&self, group: &GroupBox, vicinity: &mut Vicinity, out: &mut Vec<Run>);
 
     /// Whether runs hold every j with distance < max(r_i, r_j). Otherwise they hold only those with distance < r_j:
     /// every pair is proposed to its particle of smaller radius, but not always to both.

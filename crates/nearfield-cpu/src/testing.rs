@@ -1,6 +1,6 @@
 //! Systems that tests of structures and consumers share.
 
-use crate::{Brute, GroupBox, Input, InputRadii, Run, Slots, Structure};
+use crate::{Brute, GroupBox, Input, InputRadii, Run, Slots, Structure, Vicinity};
 use nearfield_core::philox::{Stream, normals, uniforms};
 use nearfield_core::{Boundary, Particles, Radii, SimBox};
 use std::ops::Range;
@@ -154,9 +154,9 @@ impl Structure for SeesLarger {
         self.0.group(g)
     }
 
-    fn runs(&self, group: &GroupBox, out: &mut Vec<Run>) {
+    fn runs(&self, group: &GroupBox, vicinity: &mut Vicinity, out: &mut Vec<Run>) {
         let mut images = Vec::new();
-        self.0.runs(group, &mut images);
+        self.0.runs(group, vicinity, &mut images);
         let slots = self.slots();
         for Run { image, .. } in images {
             for j in 0..slots.len() as u32 {

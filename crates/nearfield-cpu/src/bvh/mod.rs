@@ -18,7 +18,7 @@ mod tests;
 mod tree;
 mod validate;
 
-use crate::{GroupBox, Input, InputRadii, LANES, Run, Slots, Structure};
+use crate::{GroupBox, Input, InputRadii, LANES, Run, Slots, Structure, Vicinity};
 use images::{Scene, Views};
 use nearfield_core::{Images, SimBox, predicate::conservative_range};
 use node::Aabb;
@@ -48,14 +48,14 @@ pub enum Refit {
 ///
 /// ```
 /// use nearfield_core::{Boundary, Images, SimBox};
-/// use nearfield_cpu::{Bvh, GroupBox, Input, InputRadii, Refit, Run, Structure};
+/// use nearfield_cpu::{Bvh, GroupBox, Input, InputRadii, Refit, Run, Structure, Vicinity};
 /// let sim_box = SimBox::cubic(10.0, Boundary::Periodic)?;
 /// let x = [0.5, 9.5];
 /// let input = Input { sim_box: &sim_box, position: [&x, &x, &x], radii: InputRadii::Uniform(2.0), kind: &[] };
 /// let mut bvh = Bvh::new(Images::Gamma);
 /// bvh.build(&input);
 /// let mut runs = Vec::new();
-/// bvh.runs(&GroupBox { lo: [0.5; 3], hi: [0.5; 3], radius: 2.0 }, &mut runs);
+/// bvh.runs(&GroupBox { lo: [0.5; 3], hi: [0.5; 3], radius: 2.0 }, &mut Vicinity::default(), &mut runs);
 /// assert!(runs.contains(&Run { start: 0, end: 16, image: [-1; 3] }));
 /// assert_eq!(bvh.refit(&input), Refit::Done);
 /// # Ok::<(), nearfield_core::Error>(())
@@ -192,7 +192,7 @@ impl Structure for Bvh {
         g * LANES..(g + 1) * LANES
     }
 
-    fn runs(&self, group: &GroupBox, out: &mut Vec<Run>) {
+    fn runs(&self, group: &GroupBox, _: &mut Vicinity, out: &mut Vec<Run>) {
         self.arch.dispatch(Trace { bvh: self, group, out });
     }
 

@@ -1,7 +1,7 @@
 //! The tree against brute force: what it proposes, once filtered by the predicate, is exactly the set of pairs.
 
 use super::{Bvh, Probe, Refit};
-use crate::{GroupBox, Input, InputRadii, Run, Structure};
+use crate::{GroupBox, Input, InputRadii, Run, Structure, Vicinity};
 use nearfield_core::predicate::{displacement, is_neighbor, squared_length};
 use nearfield_core::{Boundary, Images, SimBox};
 use rand::{RngExt, SeedableRng};
@@ -76,7 +76,7 @@ fn traced(bvh: &Bvh, case: &Case) -> Vec<Pair> {
         let real: Vec<usize> = bvh.group(g).filter(|&slot| slots.particle[slot] != u32::MAX).collect();
         let group = GroupBox::around(slots, bvh.group(g), case.cutoff).expect("groups hold particles");
         runs.clear();
-        bvh.runs(&group, &mut runs);
+        bvh.runs(&group, &mut Vicinity::default(), &mut runs);
         assert_proposed_once(&runs, bvh, &case.name);
         for &i in &real {
             for run in &runs {
@@ -362,7 +362,11 @@ fn pairs_at_the_edge_of_range_across_a_face_survive_rounding() {
                 accepted += 1;
                 case.with_input(|input| bvh.build(input));
                 let mut runs = Vec::new();
-                bvh.runs(&GroupBox { lo: case.positions[0], hi: case.positions[0], radius: cutoff }, &mut runs);
+                bvh.runs(
+                    &GroupBox { lo: case.positions[0], hi: case.positions[0], radius: cutoff },
+                    &mut Vicinity::default(),
+                    &mut runs,
+                );
                 let proposes = |run: &Run| {
                     run.image == [1, 0, 0] && bvh.slots().particle[run.start as usize..run.end as usize].contains(&1)
                 };

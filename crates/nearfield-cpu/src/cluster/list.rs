@@ -7,7 +7,7 @@ use super::{
     quad::{self, Position, Quad, VECTORS, displacement, own_pairs, squared_length, twice},
 };
 use crate::{
-    Grid, GroupBox, Run,
+    Grid, GroupBox, Run, Vicinity,
     lanes::{self, Lanes},
 };
 use nearfield_core::predicate::conservative_range;
@@ -156,6 +156,7 @@ pub(super) struct Task {
     pub outer: Pairs,
     /// What may be within the cutoff before the next pruning.
     pub inner: Pairs,
+    vicinity: Vicinity,
     runs: Vec<Run>,
     /// What is near the second cluster of the block at hand.
     second: Pairs,
@@ -263,6 +264,7 @@ impl Task {
             Reach::Grid(grid) => grid,
         };
         self.clusters_of.clone().for_each(|b| seen[b / PAGE] = true);
+        self.vicinity.clear();
         for first in self.clusters_of.clone().step_by(PAGE) {
             let some = first..(first + PAGE).min(self.clusters_of.end);
             let all = some.map(|b| bounds(blocks, b, blocks.cutoff)).reduce(|a, b| GroupBox {
@@ -271,7 +273,9 @@ impl Task {
                 ..a
             });
             self.runs.clear();
-            all.iter().for_each(|all| grid.find_rows(all, blocks.first[first], &mut self.runs));
+            if let Some(all) = all {
+                grid.find_runs_from(&all, blocks.first[first], &mut self.vicinity, &mut self.runs);
+            }
             for run in &self.runs {
                 let (from, to) = (blocks.block_of[run.start as usize], blocks.block_of[run.end as usize - 1]);
                 seen[from as usize / PAGE..=to as usize / PAGE].fill(true);
@@ -296,7 +300,8 @@ impl lanes::Kernel for Build<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) -> usize {
         let Self { grid, blocks, reach, task, from, enough } = self;
-        let Task { clusters_of, outer, runs, second, found, .. } = task;
+        let Task { clusters_of, outer, vicinity, runs, second, found, .. } = task;
+        vicinity.clear();
         let staying = blocks.cutoff - STAYING * (reach - blocks.cutoff);
         let limits = Limits {
             reach2: lanes.splat(conservative_range(reach, blocks.extent).powi(2)),
@@ -310,7 +315,7 @@ impl lanes::Kernel for Build<'_> {
             let positions = [quad::position(lanes, midway, 2 * b), quad::position(lanes, midway, 2 * b + 1)];
             runs.clear();
             second.clear();
-            grid.find_rows(&group, blocks.first[b], runs);
+            grid.find_runs(lanes, &group, blocks.first[b], vicinity, runs);
             for runs in runs.chunk_by(|a, b| a.image == b.image) {
                 let image = runs[0].image;
                 let quads = [

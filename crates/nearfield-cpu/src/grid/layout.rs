@@ -28,6 +28,22 @@ pub(super) struct Pencil {
     pub z: [f32; 2],
 }
 
+impl Pencil {
+    /// Cell number of `x`; it never decreases with `x`, and values beyond the last cell give larger numbers.
+    #[inline(always)]
+    pub fn cell_of(&self, x: f32) -> usize {
+        (((x - self.x0) * self.cells_per_length) as i32).max(0) as usize
+    }
+
+    /// Squared distance from a group to the particles' bounds across x.
+    #[inline(always)]
+    pub fn distance2(&self, lo: [f32; 3], hi: [f32; 3]) -> f32 {
+        let dy = (self.y[0] - hi[1]).max(lo[1] - self.y[1]).max(0.0);
+        let dz = (self.z[0] - hi[2]).max(lo[2] - self.z[1]).max(0.0);
+        dy * dy + dz * dz
+    }
+}
+
 /// The pencils of one class: `n[1]` layers along z of `n[0]` pencils along y.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Layout {

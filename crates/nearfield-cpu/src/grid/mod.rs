@@ -15,18 +15,20 @@
 //!   do not widen the search among the small ones.
 
 mod classes;
+mod images;
 mod layout;
 mod order;
 mod pencils;
-mod rows;
 mod sort;
 mod survey;
+mod vicinity;
 
 use crate::{GroupBox, Input, InputRadii, Run, Slots, Structure};
 use layout::{Layout, Pencil};
 pub(crate) use pencils::NearPencil;
 use std::ops::Range;
 use survey::{Bounds, Bulk};
+pub use vicinity::Vicinity;
 
 /// Particles to a cube as wide as a pencil.
 const PENCIL_OCCUPANCY: f64 = 8.0;
@@ -147,8 +149,8 @@ impl Structure for Grid {
         self.groups[g] as usize..self.groups[g + 1] as usize
     }
 
-    fn runs(&self, group: &GroupBox, out: &mut Vec<Run>) {
-        self.find_rows(group, 0, out);
+    fn runs(&self, group: &GroupBox, vicinity: &mut Vicinity, out: &mut Vec<Run>) {
+        self.find_runs_from(group, 0, vicinity, out);
     }
 }
 

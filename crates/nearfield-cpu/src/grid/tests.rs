@@ -55,16 +55,37 @@ fn groups_cover_each_slot_once_and_are_of_one_class() {
 fn a_slot_is_proposed_at_most_once_in_an_image() {
     for case in cases() {
         let grid = built(&case);
-        let mut runs = Vec::new();
+        let (mut vicinity, mut runs) = (Vicinity::default(), Vec::new());
         for g in 0..grid.n_groups() {
             let uniform = if case.radii.is_uniform() { case.radii.largest() } else { 0.0 };
             let group = GroupBox::around(grid.slots(), grid.group(g), uniform).unwrap();
             runs.clear();
-            grid.runs(&group, &mut runs);
+            grid.runs(&group, &mut vicinity, &mut runs);
             runs.sort_unstable_by_key(|run| (run.image, run.start));
             assert!(runs.iter().all(|run| run.start < run.end), "{}", case.name);
             for pair in runs.windows(2) {
                 assert!(pair[0].image != pair[1].image || pair[0].end <= pair[1].start, "{}: {pair:?}", case.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_kept_from_group_to_group_changes_no_run() {
+    for case in cases() {
+        let grid = built(&case);
+        let uniform = if case.radii.is_uniform() { case.radii.largest() } else { 0.0 };
+        let mut kept = Vicinity::default();
+        for g in 0..grid.n_groups() {
+            let own = GroupBox::around(grid.slots(), grid.group(g), uniform).unwrap();
+            // Also across the bounds of pencils, of other radii, and far outside.
+            let wider = GroupBox { lo: own.lo.map(|x| x - 0.3 * own.radius), radius: 0.7 * own.radius, ..own };
+            let elsewhere = GroupBox { lo: own.hi.map(|x| x - 1e3), hi: own.hi.map(|x| x - 1e3), ..own };
+            for group in [own, wider, own, elsewhere] {
+                let (mut runs, mut expected) = (Vec::new(), Vec::new());
+                grid.runs(&group, &mut kept, &mut runs);
+                grid.runs(&group, &mut Vicinity::default(), &mut expected);
+                assert_eq!(runs, expected, "{}, group {g}", case.name);
             }
         }
     }

@@ -5,7 +5,7 @@ use super::{
     block::{Block, Lanes},
 };
 use crate::{
-    GroupBox, LANES, Run, Slots, Structure,
+    GroupBox, LANES, Run, Slots, Structure, Vicinity,
     candidates::{Candidates, Segment},
     lanes,
     physics::Physics,
@@ -19,6 +19,7 @@ pub(super) const GROUPS_PER_TASK: usize = 48;
 /// What a task keeps from group to group.
 #[derive(Default)]
 pub(super) struct Buffers {
+    vicinity: Vicinity,
     runs: Vec<Run>,
     candidates: Candidates,
 }
@@ -44,9 +45,9 @@ pub(super) fn each_group<'a, S: lanes::Lanes, C: Coefficients>(
 ) -> Option<Group<'a>> {
     let (from, slots, cutoff) = (structure.slots(), structure.group(g), physics.cutoff());
     let bounds = GroupBox::around(from, slots.clone(), cutoff)?;
-    let Buffers { runs, candidates } = buffers;
+    let Buffers { vicinity, runs, candidates } = buffers;
     runs.clear();
-    structure.runs(&bounds, runs);
+    structure.runs(&bounds, vicinity, runs);
     let typed = C::TYPED && !from.kind.is_empty();
     candidates.gather(lanes, (from, &physics.sim_box), &bounds, runs, C::VARIABLE_RANGE, typed);
     Some(Group { from, sim_box: &physics.sim_box, cutoff, slots, candidates })

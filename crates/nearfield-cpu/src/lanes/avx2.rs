@@ -120,6 +120,11 @@ impl Lanes for V3 {
     }
 
     #[inline(always)]
+    fn truncate(self, a: [__m256; 2]) -> [__m256i; 2] {
+        [self.avx._mm256_cvttps_epi32(a[0]), self.avx._mm256_cvttps_epi32(a[1])]
+    }
+
+    #[inline(always)]
     fn compress(self, mask: u16, value: [__m256; 2], to: &mut [f32; 16]) {
         let (low, n_low, high) = compress_halves(self, mask, value.map(cast));
         to[..8].copy_from_slice(&low.map(f32::from_bits));

@@ -81,6 +81,11 @@ impl Lanes for V4 {
         self.avx512f._mm512_cmpgt_epi32_mask(a, b)
     }
 
+    #[inline(always)]
+    fn truncate(self, a: __m512) -> __m512i {
+        self.avx512f._mm512_cvttps_epi32(a)
+    }
+
     // In a register and then stored whole: the compressing store is microcoded on some processors.
     #[inline(always)]
     fn compress(self, mask: u16, value: __m512, to: &mut [f32; 16]) {

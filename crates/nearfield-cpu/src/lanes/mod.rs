@@ -42,6 +42,9 @@ pub(crate) trait Lanes: Copy {
     /// a > b, for values below 2³¹.
     fn gt_u(self, a: Self::U, b: Self::U) -> u16;
 
+    /// Rounded towards zero, for values from 0 to 2³¹ - 128.
+    fn truncate(self, a: Self::F) -> Self::U;
+
     /// Stores the lanes of the mask next to each other. After them comes what was there, any lane, or zero: the kernels
     /// read it, and it must be finite where all of these are.
     fn compress(self, mask: u16, value: Self::F, to: &mut [f32; 16]);

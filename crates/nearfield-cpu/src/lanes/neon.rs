@@ -134,6 +134,12 @@ impl Lanes for Neon {
     }
 
     #[inline(always)]
+    fn truncate(self, a: F) -> U {
+        // Towards minus infinity: the same, as nothing is negative.
+        each(a, |a| self.neon.vcvtmq_u32_f32(a))
+    }
+
+    #[inline(always)]
     fn compress(self, mask: u16, value: F, to: &mut [f32; 16]) {
         for (at, quarter) in compress_quarters(self, mask, cast(value)) {
             to[at..at + 4].copy_from_slice(&cast::<uint8x16_t, [f32; 4]>(quarter));

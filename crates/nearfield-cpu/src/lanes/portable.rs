@@ -94,6 +94,11 @@ impl Lanes for Portable {
     }
 
     #[inline(always)]
+    fn truncate(self, a: [f32; 16]) -> [u32; 16] {
+        a.map(|a| a as u32)
+    }
+
+    #[inline(always)]
     fn compress(self, mask: u16, value: [f32; 16], to: &mut [f32; 16]) {
         compress(mask, value, to);
     }

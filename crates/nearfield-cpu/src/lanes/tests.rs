@@ -50,6 +50,10 @@ impl Kernel for Everything<'_> {
         let mut out_u = [0; 16];
         l.compress_u(u16::MAX, v, &mut out_u);
         bits.extend(out_u);
+        let numbers =
+            std::array::from_fn(|k| [0.0, 0.99, 1.0, 5e8, 2147483520.0, 16777215.0][k % 6] / (1 + k / 6) as f32);
+        l.compress_u(u16::MAX, l.truncate(l.load(&numbers)), &mut out_u);
+        bits.extend(out_u);
         for mask in [masks[0], masks[1], 0, 1, 0x8000, 0xffff, 0x5aa5, 0x00ff, 0xff00] {
             let n = mask.count_ones() as usize;
             l.compress(mask, b, &mut out);

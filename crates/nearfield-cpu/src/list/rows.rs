@@ -4,7 +4,7 @@ use super::rule::Rule;
 use super::scan::Scan;
 use crate::candidates::Candidates;
 use crate::lanes::Isa;
-use crate::{Input, InputRadii, LANES, Run, Structure};
+use crate::{Input, InputRadii, LANES, Run, Structure, Vicinity};
 use nearfield_core::{ListKind, SimBox};
 use std::ops::Range;
 
@@ -40,6 +40,7 @@ pub(crate) enum Contents {
 /// Neighbours of the particles of some groups. Buffers are kept for the next range.
 #[derive(Clone, Debug, Default)]
 pub struct Rows {
+    pub(super) vicinity: Vicinity,
     pub(super) runs: Vec<Run>,
     pub(super) candidates: Candidates,
     pub(super) output: Output,
