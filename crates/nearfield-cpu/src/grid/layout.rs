@@ -4,6 +4,7 @@ use super::PENCIL_OCCUPANCY;
 use super::classes::Class;
 use super::survey::Bulk;
 use crate::LANES;
+use crate::lanes::Lanes;
 
 /// Fewest particles to a pencil on average, which bounds memory where particles cluster.
 const LEAST_PER_PENCIL: f64 = 8.0;
@@ -29,12 +30,6 @@ pub(super) struct Pencil {
 }
 
 impl Pencil {
-    /// Cell number of `x`; it never decreases with `x`, and values beyond the last cell give larger numbers.
-    #[inline(always)]
-    pub fn cell_of(&self, x: f32) -> usize {
-        (((x - self.x0) * self.cells_per_length) as i32).max(0) as usize
-    }
-
     /// Squared distance from a group to the particles' bounds across x.
     #[inline(always)]
     pub fn distance2(&self, lo: [f32; 3], hi: [f32; 3]) -> f32 {
@@ -42,6 +37,14 @@ impl Pencil {
         let dz = (self.z[0] - hi[2]).max(lo[2] - self.z[1]).max(0.0);
         dy * dy + dz * dz
     }
+}
+
+/// Numbers of cells or pencils, which never decrease with the value: what is negative is in the first.
+#[inline(always)]
+pub(super) fn whole<L: Lanes>(lanes: L, values: L::F) -> L::U {
+    /// Above any number of them.
+    const MOST: f32 = (1u32 << 31) as f32 - 128.0;
+    lanes.truncate(lanes.min(lanes.max(values, lanes.splat(0.0)), lanes.splat(MOST)))
 }
 
 /// The pencils of one class: `n[1]` layers along z of `n[0]` pencils along y.
@@ -79,15 +82,24 @@ impl Layout {
 
     /// The pencils of points, as [`Layout::pencil_of`].
     #[inline(always)]
-    pub fn pencils_of(&self, y: &[f32; LANES], z: &[f32; LANES]) -> [u32; LANES] {
-        let (first, [ny, nz]) = (self.first as i32, self.n.map(|n| n as i32));
+    pub fn pencils_of<L: Lanes>(&self, lanes: L, y: &[f32; LANES], z: &[f32; LANES]) -> [u32; LANES] {
+        let (first, [ny, nz]) = (self.first as u32, self.n.map(|n| n as u32));
+        let (y, z) = (self.coordinates(lanes, 0, y), self.coordinates(lanes, 1, z));
         let mut pencils = [0; LANES];
         for k in 0..LANES {
-            let along_y = (((y[k] - self.lo[0]) * self.per_length[0]) as i32).clamp(0, ny - 1);
-            let along_z = (((z[k] - self.lo[1]) * self.per_length[1]) as i32).clamp(0, nz - 1);
-            pencils[k] = (first + along_z * ny + along_y) as u32;
+            pencils[k] = first + z[k].min(nz - 1) * ny + y[k].min(ny - 1);
         }
         pencils
+    }
+
+    /// As [`Layout::coordinate`], but that those of points beyond the last pencil go on.
+    #[inline(always)]
+    fn coordinates<L: Lanes>(&self, lanes: L, axis: usize, values: &[f32; LANES]) -> [u32; LANES] {
+        let from_lo = lanes.sub(lanes.load(values), lanes.splat(self.lo[axis]));
+        let mut coordinates = [0; LANES];
+        let scaled = lanes.mul(from_lo, lanes.splat(self.per_length[axis]));
+        lanes.compress_u(u16::MAX, whole(lanes, scaled), &mut coordinates);
+        coordinates
     }
 
     /// Number of pencils.

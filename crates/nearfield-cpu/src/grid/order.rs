@@ -1,6 +1,7 @@
 //! The order of the particles of one pencil: along x, those at the same x as they come.
 
 use crate::LANES;
+use crate::lanes::Lanes;
 use std::cmp::Ordering;
 
 /// Descents to a particle that a pencil may have for its order to be repaired rather than made anew.
@@ -17,6 +18,9 @@ pub(super) struct Record {
     pub particle: u32,
 }
 
+/// Cells to a particle by which a pencil is sorted: with one, twice as many particles share theirs with another.
+const FINE: usize = 2;
+
 /// Buffers for one pencil after the other.
 #[derive(Default)]
 pub(super) struct Sorting {
@@ -31,7 +35,7 @@ pub(super) struct Sorting {
 impl Sorting {
     /// Sorts particles along x.
     #[inline(always)]
-    pub fn sort(&mut self, mut position: [&mut [f32]; 3], particle: &mut [u32]) {
+    pub fn sort<L: Lanes>(&mut self, lanes: L, mut position: [&mut [f32]; 3], particle: &mut [u32]) {
         let x = &*position[0];
         let mut descents = 0u32;
         for (x, next) in x.iter().zip(&x[1..]) {
@@ -46,18 +50,24 @@ impl Sorting {
         }
         self.particle.clear();
         self.particle.extend_from_slice(particle);
-        self.sort_copies(position, particle);
+        self.sort_copies(lanes, position, particle);
     }
 
     /// Writes the particles of records where they belong, sorted along x.
     #[inline(always)]
-    pub fn sort_records(&mut self, records: &[Record], position: [&mut [f32]; 3], particle: &mut [u32]) {
+    pub fn sort_records<L: Lanes>(
+        &mut self,
+        lanes: L,
+        records: &[Record],
+        position: [&mut [f32]; 3],
+        particle: &mut [u32],
+    ) {
         let x = &mut self.position[0];
         x.resize(records.len(), 0.0);
         for (x, record) in x.iter_mut().zip(records) {
             *x = record.position[0];
         }
-        self.find_order(records.len());
+        self.find_order(lanes, records.len());
         let [x, y, z] = position;
         let places = x.iter_mut().zip(y).zip(z).zip(particle);
         for ((((x, y), z), particle), &k) in places.zip(&self.order) {
@@ -69,8 +79,8 @@ impl Sorting {
 
     /// Writes the copies in order.
     #[inline(always)]
-    fn sort_copies(&mut self, position: [&mut [f32]; 3], particle: &mut [u32]) {
-        self.find_order(particle.len());
+    fn sort_copies<L: Lanes>(&mut self, lanes: L, position: [&mut [f32]; 3], particle: &mut [u32]) {
+        self.find_order(lanes, particle.len());
         for (axis, copy) in position.into_iter().zip(&self.position) {
             for (to, &k) in axis.iter_mut().zip(&self.order) {
                 *to = copy[k as usize];
@@ -81,19 +91,20 @@ impl Sorting {
         }
     }
 
-    /// Finds the order of the `n` copies along x: by cells of about one particle each, and sorted within them.
+    /// Finds the order of the `n` copies along x: by cells, and sorted within them.
     #[inline(always)]
-    fn find_order(&mut self, n: usize) {
+    fn find_order<L: Lanes>(&mut self, lanes: L, n: usize) {
         let x = &self.position[0][..n];
-        let [lo, hi] = range(x);
-        let per_length = n as f32 / (hi - lo);
+        let [lo, hi] = range(lanes, x);
+        let n_cells = FINE * n;
+        let per_length = n_cells as f32 / (hi - lo);
         let per_length = if per_length.is_finite() { per_length } else { 0.0 };
         self.cell.resize(n, 0);
         for (cell, x) in self.cell.iter_mut().zip(x) {
-            *cell = ((x - lo) * per_length).min((n - 1) as f32) as u32;
+            *cell = ((x - lo) * per_length).min((n_cells - 1) as f32) as u32;
         }
         self.places.clear();
-        self.places.resize(n + 1, 0);
+        self.places.resize(n_cells + 1, 0);
         for &cell in &self.cell {
             self.places[cell as usize + 1] += 1;
         }
@@ -114,20 +125,26 @@ impl Sorting {
 
 /// Least and largest.
 #[inline(always)]
-pub(super) fn range(values: &[f32]) -> [f32; 2] {
-    let (mut lo, mut hi) = ([f32::MAX; LANES], [f32::MIN; LANES]);
+pub(super) fn range<L: Lanes>(lanes: L, values: &[f32]) -> [f32; 2] {
     let (chunks, rest) = values.as_chunks::<LANES>();
     let mut last = [rest.first().copied().unwrap_or(f32::MAX); LANES];
     last[..rest.len()].copy_from_slice(rest);
     let last = (!rest.is_empty()).then_some(&last);
+    let (mut lo, mut hi) = (lanes.splat(f32::MAX), lanes.splat(f32::MIN));
     for chunk in chunks.iter().chain(last) {
-        for k in 0..LANES {
-            // Not `min` and `max`, which are not vectorised for their treatment of NaN.
-            lo[k] = if chunk[k] < lo[k] { chunk[k] } else { lo[k] };
-            hi[k] = if chunk[k] > hi[k] { chunk[k] } else { hi[k] };
-        }
+        let values = lanes.load(chunk);
+        (lo, hi) = (lanes.min(lo, values), lanes.max(hi, values));
     }
-    [lo.into_iter().fold(f32::MAX, f32::min), hi.into_iter().fold(f32::MIN, f32::max)]
+    let (mut least, mut largest) = ([0.0; LANES], [0.0; LANES]);
+    lanes.compress(u16::MAX, lo, &mut least);
+    lanes.compress(u16::MAX, hi, &mut largest);
+    let mut range = [least[0], largest[0]];
+    for k in 1..LANES {
+        // Not `min` and `max`, whose treatment of NaN takes twice as long.
+        range[0] = if least[k] < range[0] { least[k] } else { range[0] };
+        range[1] = if largest[k] > range[1] { largest[k] } else { range[1] };
+    }
+    range
 }
 
 /// Puts the few particles that are out of order along x into their places. False, with particles nearer to their places,
@@ -192,6 +209,7 @@ fn sort_along(x: &[f32], order: &mut [u32]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lanes::Portable;
 
     fn sorted(x: &[f32]) -> Vec<u32> {
         let mut axes = [x.to_vec(), x.iter().map(|x| 2.0 * x).collect(), x.iter().map(|x| 3.0 * x).collect()];
@@ -201,9 +219,9 @@ mod tests {
             .collect();
         let (mut from_records, mut particle_from_records) = (axes.clone(), particle.clone());
         let [a, b, c] = &mut axes;
-        Sorting::default().sort([a, b, c], &mut particle);
+        Sorting::default().sort(Portable, [a, b, c], &mut particle);
         let [a, b, c] = &mut from_records;
-        Sorting::default().sort_records(&records, [a, b, c], &mut particle_from_records);
+        Sorting::default().sort_records(Portable, &records, [a, b, c], &mut particle_from_records);
         assert_eq!((&axes, &particle), (&from_records, &particle_from_records));
         for (k, &i) in particle.iter().enumerate() {
             let x = x[i as usize];

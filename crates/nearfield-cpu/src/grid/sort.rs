@@ -5,7 +5,7 @@
 //! is but one place to write to. The order of slots does not depend on the number of threads: particles of a pencil
 //! come to it by index, and stay so where their x is the same.
 
-use super::layout::{Layout, Pencil};
+use super::layout::{Layout, Pencil, whole};
 use super::order::{Record, Sorting, range};
 use super::{CELL_OCCUPANCY, Grid, classes};
 use crate::lanes::{Isa, Kernel, Lanes};
@@ -176,7 +176,7 @@ impl Kernel for Count<'_> {
             let n = LANES.min(y.len() - at);
             let mut pencils = [current; LANES];
             if let ([layout], Some(y), Some(z)) = (layouts, y[at..].first_chunk(), z[at..].first_chunk()) {
-                pencils = layout.pencils_of(y, z);
+                pencils = layout.pencils_of(lanes, y, z);
             } else {
                 for k in 0..n {
                     let i = particles.start + at + k;
@@ -310,7 +310,7 @@ impl Kernel for Sort<'_, '_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<L: Lanes>(self, _: L) {
+    fn run<L: Lanes>(self, lanes: L) {
         let Self { block, input, layouts, group_size } = self;
         let Some(&begin) = block.pencils.first() else { return };
         let mut sorting = Sorting::default();
@@ -325,14 +325,14 @@ impl Kernel for Sort<'_, '_> {
             let (x, y, z) = (&mut x[slots.clone()], &mut y[slots.clone()], &mut z[slots.clone()]);
             let (position, particle) = ([&mut *x, &mut *y, &mut *z], &mut block.particle[slots.clone()]);
             if block.records.is_empty() {
-                sorting.sort(position, particle);
+                sorting.sort(lanes, position, particle);
             } else {
-                sorting.sort_records(&block.records[slots.clone()], position, particle);
+                sorting.sort_records(lanes, &block.records[slots.clone()], position, particle);
             }
-            let pencil = measure(start, end, [x, y, z]);
+            let pencil = measure(lanes, start, end, [x, y, z]);
             block.pencils[p] = pencil;
             let cells = (start.cells - begin.cells) as usize..(end.cells - begin.cells) as usize;
-            divide_cells(x, &pencil, &mut block.cells[cells]);
+            divide_cells(lanes, x, &pencil, &mut block.cells[cells]);
             let class = layouts.partition_point(|layout| layout.first <= block.first_pencil + p) - 1;
             divide_groups(x, start.slots, group_size, layouts[class].group_length, &mut block.groups);
             let particles = &block.particle[slots.clone()];
@@ -352,22 +352,30 @@ impl Kernel for Sort<'_, '_> {
 
 /// A pencil with the bounds of its particles, which are sorted along x, and its division into cells.
 #[inline(always)]
-fn measure(start: Pencil, end: Pencil, [x, y, z]: [&[f32]; 3]) -> Pencil {
+fn measure<L: Lanes>(lanes: L, start: Pencil, end: Pencil, [x, y, z]: [&[f32]; 3]) -> Pencil {
     let (first, last) = (x[0], x[x.len() - 1]);
     let per_length = (end.cells - start.cells) as f32 / (last - first);
     let cells_per_length = if per_length.is_finite() { per_length } else { 0.0 };
-    Pencil { x0: first, cells_per_length, y: range(y), z: range(z), ..start }
+    Pencil { x0: first, cells_per_length, y: range(lanes, y), z: range(lanes, z), ..start }
 }
 
 /// Writes the first slot of each cell of a pencil, whose particles are sorted along x.
 #[inline(always)]
-fn divide_cells(x: &[f32], pencil: &Pencil, cells: &mut [u32]) {
+fn divide_cells<L: Lanes>(lanes: L, x: &[f32], pencil: &Pencil, cells: &mut [u32]) {
     let end = pencil.slots + x.len() as u32;
     let last = cells.len() - 1;
+    let (x0, per_length) = (lanes.splat(pencil.x0), lanes.splat(pencil.cells_per_length));
     cells.fill(end);
     // From behind, so that the first slot of a cell is written last.
-    for (k, &x) in x.iter().enumerate().rev() {
-        cells[pencil.cell_of(x).min(last)] = pencil.slots + k as u32;
+    for (c, chunk) in x.chunks(LANES).enumerate().rev() {
+        let mut values = [0.0; LANES];
+        values[..chunk.len()].copy_from_slice(chunk);
+        let mut cell_of = [0; LANES];
+        let scaled = lanes.mul(lanes.sub(lanes.load(&values), x0), per_length);
+        lanes.compress_u(u16::MAX, whole(lanes, scaled), &mut cell_of);
+        for k in (0..chunk.len()).rev() {
+            cells[(cell_of[k] as usize).min(last)] = pencil.slots + (c * LANES + k) as u32;
+        }
     }
     let mut next = end;
     for cell in cells.iter_mut().rev() {

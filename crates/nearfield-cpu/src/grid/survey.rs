@@ -37,8 +37,8 @@ impl Kernel for RangeOf<'_> {
     type Output = [f32; 2];
 
     #[inline(always)]
-    fn run<L: Lanes>(self, _: L) -> [f32; 2] {
-        range(self.0)
+    fn run<L: Lanes>(self, lanes: L) -> [f32; 2] {
+        range(lanes, self.0)
     }
 }
 

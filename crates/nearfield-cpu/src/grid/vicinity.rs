@@ -1,13 +1,10 @@
 //! The pencils around a group of queries, kept for the groups after it: those of one pencil have the same around them.
 
-use super::layout::Pencil;
+use super::layout::{Pencil, whole};
 use super::{Grid, largest};
 use crate::lanes::{Isa, Kernel, Lanes};
 use crate::{GroupBox, LANES, Run};
 use nearfield_core::predicate::conservative_range;
-
-/// Cells are counted up to here; there are no more of them.
-const CELLS: f32 = (1u32 << 31) as f32 - 128.0;
 
 /// What is around a group of queries, for whoever searches for one group after the other. It belongs to one structure as it
 /// is: a new one begins with [`Vicinity::default`] or [`Vicinity::clear`].
@@ -67,8 +64,7 @@ impl Around {
     /// The cells of pencils that hold `x`, counted from the first; beyond the last they go on.
     #[inline(always)]
     fn cells_of<L: Lanes>(&self, lanes: L, x: L::F) -> L::U {
-        let cell = lanes.mul(lanes.sub(x, lanes.load(&self.x0)), lanes.load(&self.cells_per_length));
-        lanes.truncate(lanes.min(lanes.max(cell, lanes.splat(0.0)), lanes.splat(CELLS)))
+        whole(lanes, lanes.mul(lanes.sub(x, lanes.load(&self.x0)), lanes.load(&self.cells_per_length)))
     }
 }
 

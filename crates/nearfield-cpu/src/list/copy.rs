@@ -1,5 +1,18 @@
 //! Short arrays copied from anywhere in memory.
 
+use crate::LANES;
+
+/// Copies the first `n` entries, and may copy what comes after them, as long as there is room: most rows are one chunk
+/// then, whatever their length, and no jump depends on it. For rows that are written one after the other.
+#[inline(always)]
+pub(super) fn copy_over(from: &[u32], n: usize, to: &mut [u32]) {
+    let n_chunks = n.div_ceil(LANES);
+    match (from.as_chunks::<LANES>().0.get(..n_chunks), to.as_chunks_mut::<LANES>().0.get_mut(..n_chunks)) {
+        (Some(from), Some(to)) => from.iter().zip(to).for_each(|(from, to)| *to = *from),
+        _ => copy(&from[..n], &mut to[..n]),
+    }
+}
+
 /// Copies a row. Rows are short, so that a call of the C library would take longer than the copy.
 #[inline(always)]
 pub(crate) fn copy(from: &[u32], to: &mut [u32]) {
@@ -25,6 +38,22 @@ fn copy_by<const N: usize>(from: &[u32], to: &mut [u32]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rows_that_are_copied_over_the_rest_of_the_one_before_are_whole() {
+        for last in [0, 1, 15, 16, 17] {
+            let lengths = [3, 0, 16, 17, 1, 40, 8, last];
+            let from: Vec<u32> = (0..100).collect();
+            let mut to = vec![u32::MAX; lengths.iter().sum()];
+            let (mut rest, mut expected) = (&mut to[..], Vec::new());
+            for (k, n) in lengths.into_iter().enumerate() {
+                copy_over(&from[k..], n, rest);
+                rest = &mut rest[n..];
+                expected.extend_from_slice(&from[k..k + n]);
+            }
+            assert_eq!(to, expected);
+        }
+    }
 
     #[test]
     fn rows_of_any_length_are_copied_and_nothing_else_is_written() {

@@ -1,7 +1,7 @@
 //! One contiguous list out of the rows of many tasks.
 
 use super::addresses::{Addresses, Place};
-use super::copy::copy;
+use super::copy::copy_over;
 use super::rows::{Contents, Queries, Rows};
 use super::{Rule, mirror};
 use crate::prefetch::prefetch;
@@ -252,7 +252,7 @@ impl<'a> Columns<'a> {
             let extent = self.extent(k);
             let (from, stream, start) = source(i);
             let row = from.row(i as u32, stream, start..start + extent.len());
-            copy(row.neighbors, &mut self.indices[extent.clone()]);
+            copy_over(&from.indices(stream)[start..], extent.len(), &mut self.indices[extent.start..]);
             if let Some(shifts) = &mut self.shifts {
                 shifts[extent.clone()].copy_from_slice(row.images);
             }
