@@ -1,14 +1,15 @@
 //! Build, refit and count queries of the software BVH, in milliseconds: median / best.
 //!
 //! `uniform`: 10^6 equal boxes in a periodic cube, radius for 8 and for 32 neighbours on average; particles in random
-//! order, or in the order of the tree. `log-normal`: 10^5 boxes of radii LN(1, 2) within [1, 330] in a
+//! order, or in the order of the tree. `clustered`: 10^6 of radius 1 in a normal cloud of standard deviation 25, in the
+//! order of the tree. `log-normal`: 10^5 boxes of radii LN(1, 2) within [1, 330] in a
 //! cube of 1000 (paper A). A count query tests every proposed slot against each query point of the group.
 
 use nearfield_core::{Boundary, Images, SimBox};
 use nearfield_cpu::{Bvh, GroupBox, Input, InputRadii, LANES, Run, Structure, Vicinity};
 use pulp::{Arch, Simd, WithSimd};
 use rand::{RngExt, SeedableRng};
-use rand_distr::{Distribution, LogNormal};
+use rand_distr::{Distribution, LogNormal, Normal};
 use rand_pcg::Pcg64Mcg as Rng;
 use rayon::prelude::*;
 use std::{ops::Range, time::Instant};
@@ -32,6 +33,17 @@ impl Scene {
         }
     }
 
+    fn clustered(n: usize) -> Self {
+        let rng = &mut Rng::seed_from_u64(4);
+        let normal = Normal::new(500.0f32, 25.0).expect("a valid distribution");
+        Self {
+            sim_box: SimBox::cubic(1000.0, Boundary::Periodic).expect("a valid box"),
+            position: [0; 3].map(|_| normal.sample_iter(&mut *rng).take(n).collect()),
+            radii: None,
+            cutoff: 1.0,
+        }
+    }
+
     fn log_normal(n: usize) -> Self {
         let rng = &mut Rng::seed_from_u64(2);
         let radius = LogNormal::new(1.0f32, 2.0).expect("a valid distribution");
@@ -51,8 +63,10 @@ impl Scene {
         Input { sim_box: &self.sim_box, position: self.position.each_ref().map(Vec::as_slice), radii, kind: &[] }
     }
 
-    /// The same particles in the order of `bvh`.
-    fn reordered(mut self, bvh: &Bvh) -> Self {
+    /// The same particles in the order of their tree.
+    fn sorted(mut self) -> Self {
+        let mut bvh = Bvh::new(Images::Gamma);
+        bvh.build(&self.input());
         let order: Vec<usize> = bvh.slots().particle.iter().filter(|&&p| p != u32::MAX).map(|&p| p as usize).collect();
         let position = self.position.each_ref().map(|axis| order[..axis.len()].iter().map(|&p| axis[p]).collect());
         self.position = position;
@@ -162,13 +176,14 @@ fn main() {
                 if wanted(&name) {
                     let scene = Scene::uniform(1_000_000, neighbors);
                     measure(&format!("{name} random"), &scene, Images::Gamma);
-                    let mut bvh = Bvh::new(Images::Gamma);
-                    bvh.build(&scene.input());
-                    let scene = scene.reordered(&bvh);
+                    let scene = scene.sorted();
                     for &images in Images::ALL {
                         measure(&format!("{name} sorted"), &scene, images);
                     }
                 }
+            }
+            if wanted("clustered") {
+                measure("clustered sorted", &Scene::clustered(1_000_000).sorted(), Images::Gamma);
             }
             if wanted("log-normal") {
                 let scene = Scene::log_normal(100_000);

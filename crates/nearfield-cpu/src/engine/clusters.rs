@@ -20,7 +20,7 @@ use std::{
 const MOST_BYTES: u64 = 1024;
 
 /// Nanoseconds of one thread for each particle of a new list, for each pair of cluster and block that it holds, for each
-/// of them when it is pruned, and at each step: fitted to the melt with skins of 0.4 to 1.9 (docs/performance.md). Only
+/// of them when it is pruned, and at each step: fitted to the melt with skins of 0.4 to 1.9 (docs/performance-log.md). Only
 /// their ratios matter. Steps cost more with a thick skin, though they do not read the list: perhaps because the order of
 /// particles decays in the longer time that it serves.
 const SORTING: f64 = 140.0;

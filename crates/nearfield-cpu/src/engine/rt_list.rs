@@ -17,7 +17,7 @@ use rayon::prelude::*;
 const BYTES_PER_ENTRY: u64 = 2 * (4 + 3);
 
 /// Nanoseconds of one thread for each particle of a new list, for each of its entries, and for each of them at each step:
-/// fitted to the melt with skins of 0.1 to 0.8 (docs/performance.md). Only their ratios matter.
+/// fitted to the melt with skins of 0.1 to 0.8 (docs/performance-log.md). Only their ratios matter.
 const SORTING: f64 = 60.0;
 const LISTING: f64 = 4.4;
 const READING: f64 = 9.5;
