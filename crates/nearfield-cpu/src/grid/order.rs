@@ -96,12 +96,14 @@ impl Sorting {
     fn find_order<L: Lanes>(&mut self, lanes: L, n: usize) {
         let x = &self.position[0][..n];
         let [lo, hi] = range(lanes, x);
-        let n_cells = FINE * n;
+        let n_cells = (FINE * n).min(u32::MAX as usize);
         let per_length = n_cells as f32 / (hi - lo);
         let per_length = if per_length.is_finite() { per_length } else { 0.0 };
         self.cell.resize(n, 0);
+        // As whole numbers: of many particles the last cell is none of those that f32 has.
+        let last = (n_cells - 1) as u32;
         for (cell, x) in self.cell.iter_mut().zip(x) {
-            *cell = ((x - lo) * per_length).min((n_cells - 1) as f32) as u32;
+            *cell = (((x - lo) * per_length) as u32).min(last);
         }
         self.places.clear();
         self.places.resize(n_cells + 1, 0);
@@ -247,5 +249,15 @@ mod tests {
             expected.sort_by(|&a, &b| x[a as usize].total_cmp(&x[b as usize]));
             assert_eq!(sorted(&x), expected, "{x:?}");
         }
+    }
+
+    #[test]
+    fn a_pencil_of_more_cells_than_f32_can_tell_apart_is_sorted() {
+        let n = (1 << 23) + 4;
+        assert_eq!((FINE * n - 1) as f32 as usize, FINE * n, "the last cell, rounded, is one too many");
+        let x = (0..n).rev().map(|k| k as f32).collect();
+        let mut sorting = Sorting { position: [x, Vec::new(), Vec::new()], ..Sorting::default() };
+        sorting.find_order(Portable, n);
+        assert!(sorting.order.iter().rev().copied().eq(0..n as u32));
     }
 }
