@@ -39,12 +39,17 @@ impl Pencil {
     }
 }
 
-/// Numbers of cells or pencils, which never decrease with the value: what is negative is in the first.
+/// The cells or pencils, counted from that which begins with `from`, that values are in. They never decrease with the value:
+/// what is before the first is in the first, and beyond the last they go on.
 #[inline(always)]
-pub(super) fn whole<L: Lanes>(lanes: L, values: L::F) -> L::U {
+pub(super) fn numbers<L: Lanes>(lanes: L, values: L::F, from: L::F, per_length: L::F) -> [u32; LANES] {
     /// Above any number of them.
     const MOST: f32 = (1u32 << 31) as f32 - 128.0;
-    lanes.truncate(lanes.min(lanes.max(values, lanes.splat(0.0)), lanes.splat(MOST)))
+    let scaled = lanes.mul(lanes.sub(values, from), per_length);
+    let mut numbers = [0; LANES];
+    let whole = lanes.truncate(lanes.min(lanes.max(scaled, lanes.splat(0.0)), lanes.splat(MOST)));
+    lanes.compress_u(u16::MAX, whole, &mut numbers);
+    numbers
 }
 
 /// The pencils of one class: `n[1]` layers along z of `n[0]` pencils along y.
@@ -95,11 +100,7 @@ impl Layout {
     /// As [`Layout::coordinate`], but that those of points beyond the last pencil go on.
     #[inline(always)]
     fn coordinates<L: Lanes>(&self, lanes: L, axis: usize, values: &[f32; LANES]) -> [u32; LANES] {
-        let from_lo = lanes.sub(lanes.load(values), lanes.splat(self.lo[axis]));
-        let mut coordinates = [0; LANES];
-        let scaled = lanes.mul(from_lo, lanes.splat(self.per_length[axis]));
-        lanes.compress_u(u16::MAX, whole(lanes, scaled), &mut coordinates);
-        coordinates
+        numbers(lanes, lanes.load(values), lanes.splat(self.lo[axis]), lanes.splat(self.per_length[axis]))
     }
 
     /// Number of pencils.

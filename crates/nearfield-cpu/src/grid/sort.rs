@@ -5,7 +5,7 @@
 //! is but one place to write to. The order of slots does not depend on the number of threads: particles of a pencil
 //! come to it by index, and stay so where their x is the same.
 
-use super::layout::{Layout, Pencil, whole};
+use super::layout::{Layout, Pencil, numbers};
 use super::order::{Record, Sorting, range};
 use super::{CELL_OCCUPANCY, Grid, classes};
 use crate::lanes::{Isa, Kernel, Lanes};
@@ -370,9 +370,7 @@ fn divide_cells<L: Lanes>(lanes: L, x: &[f32], pencil: &Pencil, cells: &mut [u32
     for (c, chunk) in x.chunks(LANES).enumerate().rev() {
         let mut values = [0.0; LANES];
         values[..chunk.len()].copy_from_slice(chunk);
-        let mut cell_of = [0; LANES];
-        let scaled = lanes.mul(lanes.sub(lanes.load(&values), x0), per_length);
-        lanes.compress_u(u16::MAX, whole(lanes, scaled), &mut cell_of);
+        let cell_of = numbers(lanes, lanes.load(&values), x0, per_length);
         for k in (0..chunk.len()).rev() {
             cells[(cell_of[k] as usize).min(last)] = pencil.slots + (c * LANES + k) as u32;
         }

@@ -1,7 +1,7 @@
 //! The pencils around a group of queries, kept for the groups after it: those of one pencil have the same around them.
 
-use super::layout::{Pencil, whole};
-use super::{Grid, largest};
+use super::Grid;
+use super::layout::{Pencil, numbers};
 use crate::lanes::{Isa, Kernel, Lanes};
 use crate::{GroupBox, LANES, Run};
 use nearfield_core::predicate::conservative_range;
@@ -60,12 +60,6 @@ impl Around {
         n_cells: [0; LANES],
         image: [[0; 2]; LANES],
     };
-
-    /// The cells of pencils that hold `x`, counted from the first; beyond the last they go on.
-    #[inline(always)]
-    fn cells_of<L: Lanes>(&self, lanes: L, x: L::F) -> L::U {
-        whole(lanes, lanes.mul(lanes.sub(x, lanes.load(&self.x0)), lanes.load(&self.cells_per_length)))
-    }
 }
 
 impl Vicinity {
@@ -76,7 +70,6 @@ impl Vicinity {
 
     fn push(&mut self, pencil: &Pencil, next: &Pencil, largest: f32, image: [i8; 2], shift: [f32; 2]) {
         if self.n.is_multiple_of(LANES) {
-            self.pencils.truncate(self.n / LANES);
             self.pencils.push(Around::NONE);
         }
         let (to, k) = (&mut self.pencils[self.n / LANES], self.n % LANES);
@@ -124,15 +117,14 @@ impl Grid {
         vicinity: &mut Vicinity,
         out: &mut Vec<Run>,
     ) {
-        let extent = self.extent.max(largest(group.lo)).max(largest(group.hi));
+        let extent = self.extent_with(group);
         if !vicinity.area.is_some_and(
             #[inline(always)]
             |area| area.holds(group, extent),
         ) {
             self.look_around(group, extent, vicinity);
         }
-        let farthest = self.layouts.iter().fold(group.radius, |r, layout| r.max(layout.largest));
-        let images = self.images_in_reach(0, group, conservative_range(farthest, extent));
+        let images = self.images_in_reach(0, group, self.farthest(group.radius, extent));
         for &image in images.iter() {
             self.select(lanes, group, image, extent, from, vicinity, out);
         }
@@ -167,11 +159,11 @@ impl Grid {
             // Where both are infinite the root is NaN, and the whole pencil is near.
             let half_length = lanes.min(lanes.sqrt(lanes.sub(reach2, distance2)), most);
             let (least, to) = (lanes.sub(lo[0], half_length), lanes.add(hi[0], half_length));
-            let (mut begins, mut ends) = ([0; LANES], [0; LANES]);
-            lanes.compress_u(u16::MAX, around.cells_of(lanes, least), &mut begins);
-            lanes.compress_u(u16::MAX, around.cells_of(lanes, to), &mut ends);
+            let (x0, per_length) = (lanes.load(&around.x0), lanes.load(&around.cells_per_length));
+            let begins = numbers(lanes, least, x0, per_length);
+            let ends = numbers(lanes, to, x0, per_length);
             let held = (1u32 << (vicinity.n - c * LANES).min(LANES)) - 1;
-            let mut near = held as u16 & !lanes.lt(reach2, distance2) & !lanes.lt(to, lanes.load(&around.x0));
+            let mut near = held as u16 & !lanes.lt(reach2, distance2) & !lanes.lt(to, x0);
             while near != 0 {
                 let k = near.trailing_zeros() as usize;
                 near &= near - 1;
@@ -197,38 +189,24 @@ impl Grid {
     fn look_around(&self, group: &GroupBox, extent: f32, vicinity: &mut Vicinity) {
         let area = self.area_around(group, extent, vicinity.area);
         vicinity.area = Some(area);
+        vicinity.pencils.clear();
         vicinity.n = 0;
-        let [x0, x1] = [group.lo[0], group.hi[0]];
-        let lo = [x0, area.lo[0], area.lo[1]];
-        let hi = [x1, area.hi[0], area.hi[1]];
-        let all = GroupBox { lo, hi, radius: area.radius };
-        let farthest = self.layouts.iter().fold(area.radius, |r, layout| r.max(layout.largest));
-        let farthest = conservative_range(farthest, area.extent);
-        for &image_z in self.images_in_reach(2, &all, farthest).iter() {
-            for &image_y in self.images_in_reach(1, &all, farthest).iter() {
-                let image = [image_y, image_z];
-                let shift = [f32::from(image_y) * self.period[1], f32::from(image_z) * self.period[2]];
-                for layout in &self.layouts {
-                    let reach = conservative_range(area.radius.max(layout.largest), area.extent);
-                    let lo = [x0, area.lo[0] - shift[0], area.lo[1] - shift[1]];
-                    let hi = [x1, area.hi[0] - shift[0], area.hi[1] - shift[1]];
-                    let range = |axis: usize| {
-                        let (from, to) = (lo[axis + 1] - reach, hi[axis + 1] + reach);
-                        layout.coordinate(axis, from)..=layout.coordinate(axis, to)
-                    };
-                    for z in range(1) {
-                        for y in range(0) {
-                            let p = layout.first + z * layout.n[0] + y;
-                            let (pencil, next) = (&self.pencils[p], &self.pencils[p + 1]);
-                            if pencil.slots < next.slots && pencil.distance2(lo, hi) <= reach * reach {
-                                vicinity.push(pencil, next, layout.largest, image, shift);
-                            }
-                        }
-                    }
-                }
+        let ([y0, z0], [y1, z1]) = (area.lo, area.hi);
+        let all = GroupBox { lo: [group.lo[0], y0, z0], hi: [group.hi[0], y1, z1], radius: area.radius };
+        self.for_each_image(&all, self.farthest(area.radius, area.extent), |image, bounds| {
+            // Those along x are each group's own.
+            if image[0] != 0 {
+                return;
             }
-        }
-        vicinity.pencils.truncate(vicinity.n.div_ceil(LANES));
+            let image = [image[1], image[2]];
+            let shift = std::array::from_fn(|axis| f32::from(image[axis]) * self.period[axis + 1]);
+            for layout in &self.layouts {
+                let reach = conservative_range(area.radius.max(layout.largest), area.extent);
+                self.for_each_pencil(layout, bounds, reach, |p| {
+                    vicinity.push(&self.pencils[p], &self.pencils[p + 1], layout.largest, image, shift);
+                });
+            }
+        });
     }
 
     /// The area of the pencil that `group` lies in: the narrowest that is not much narrower than the group. What was the

@@ -4,7 +4,7 @@ use super::rule::Rule;
 use super::scan::Scan;
 use crate::candidates::Candidates;
 use crate::lanes::Isa;
-use crate::{Input, InputRadii, LANES, Run, Structure, Vicinity};
+use crate::{Input, InputRadii, LANES, Run, Slots, Structure, Vicinity};
 use nearfield_core::{ListKind, SimBox};
 use std::ops::Range;
 
@@ -12,6 +12,8 @@ use std::ops::Range;
 #[derive(Clone, Copy)]
 pub(crate) struct Queries<'a> {
     pub structure: &'a dyn Structure,
+    /// Its slots: to ask for them is a call, which has no place in kernels.
+    pub slots: &'a Slots,
     /// The radius, where slots carry none.
     pub uniform: f32,
 }
@@ -23,7 +25,7 @@ impl<'a> Queries<'a> {
             InputRadii::Uniform(r) => r,
             InputRadii::PerParticle(_) => 0.0,
         };
-        Self { structure, uniform }
+        Self { structure, slots: structure.slots(), uniform }
     }
 }
 

@@ -25,25 +25,20 @@ impl Kernel for Scan<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
         let slots = self.structure.slots();
-        let queries = self.queries.structure.slots();
         let per_particle = !slots.radius.is_empty() && self.rule != Rule::Bipartite;
         let Rows { vicinity, runs, candidates, output } = self.rows;
         vicinity.clear();
         output.clear(self.contents);
         for g in self.groups {
             let group = self.queries.structure.group(g);
-            let Some(bounds) = GroupBox::around(queries, group.clone(), self.queries.uniform) else { continue };
+            let Some(bounds) = GroupBox::around(self.queries.slots, group.clone(), self.queries.uniform) else {
+                continue;
+            };
             runs.clear();
             self.structure.runs(&bounds, vicinity, runs);
             candidates.gather(lanes, (slots, self.sim_box), &bounds, runs, per_particle, false);
-            let work = Group {
-                queries,
-                uniform: self.queries.uniform,
-                group,
-                sim_box: self.sim_box,
-                candidates,
-                contents: self.contents,
-            };
+            let work =
+                Group { queries: self.queries, group, sim_box: self.sim_box, candidates, contents: self.contents };
             match (self.rule, per_particle) {
                 (Rule::Full, false) => work.scan::<L, Full<false>>(lanes, output),
                 (Rule::Full, true) => work.scan::<L, Full<true>>(lanes, output),
@@ -57,9 +52,7 @@ impl Kernel for Scan<'_> {
 }
 
 struct Group<'a> {
-    queries: &'a Slots,
-    /// The radius, where these carry none.
-    uniform: f32,
+    queries: Queries<'a>,
     group: Range<usize>,
     sim_box: &'a SimBox,
     candidates: &'a Candidates,
@@ -69,7 +62,7 @@ struct Group<'a> {
 impl Group<'_> {
     #[inline(always)]
     fn scan<L: Lanes, K: Keep>(self, lanes: L, output: &mut Output) {
-        let slots = self.queries;
+        let slots = self.queries.slots;
         let Room { n_rows, particle: particles, ends, streams } =
             output.room_for(self.group.len(), self.candidates.len());
         let [even, odd] = streams;
@@ -102,8 +95,8 @@ impl Group<'_> {
 
     #[inline(always)]
     fn query<L: Lanes>(&self, lanes: L, slot: usize) -> Query<L> {
-        let slots = self.queries;
-        let radius = slots.radius.get(slot).copied().unwrap_or(self.uniform);
+        let slots = self.queries.slots;
+        let radius = slots.radius.get(slot).copied().unwrap_or(self.queries.uniform);
         Query::new(lanes, slots.at(slot), radius, slots.particle[slot])
     }
 
